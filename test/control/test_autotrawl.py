@@ -88,7 +88,7 @@ class Tow:
 BALANCE = AutotrawlSettings(give_gain=0.0, haul_gain=0.0)
 
 
-@pytest.mark.parametrize(('length', 'speed', 'apart'), [(500.0, 2.3, 5.0), (200.0, 1.9, 1.5)])
+@pytest.mark.parametrize(('length', 'speed', 'apart'), [(500.0, 2.3, 5.0), (200.0, 1.9, 3.0)])
 def test_unequal_warps_come_to_equal_tension(model, length, speed, apart):
     start = (length + 0.5 * apart, length - 0.5 * apart)
     tow = Tow(model, start, speed, AutotrawlSettings()).go(5)
@@ -108,7 +108,7 @@ def test_two_per_cent_of_a_counter_make_unequal_lengths_and_equal_tension_undoes
     port, starboard = tow.lengths[-1]
     assert port == pytest.approx(500.0 / 1.02, abs=0.5)
     assert starboard == pytest.approx(500.0, abs=0.5)
-    assert tow.difference()[-1] > 0.08
+    assert tow.difference()[-1] > 0.07
     tow.autotrawl.change(BALANCE)
     tow.go(7)
     assert np.abs(tow.difference()[-60:]).max() < 0.01

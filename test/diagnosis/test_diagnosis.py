@@ -48,6 +48,17 @@ def test_nothing_is_found_where_nothing_is(clean):
     assert headline(clean).startswith('No discrepancy')
 
 
+def test_floats_are_not_told_of_a_gear_that_has_none(clean):
+    test = clean.score_test
+    (floats,) = [one for one in test.wanted if one.name == 'floats']
+    assert clean.gear.floats.buoyancy_n == 0.0
+    assert test.strength(floats) == 0.0
+    assert np.isposinf(test.detectable(floats)).all()
+    told = result(clean, [])
+    json.dumps(told, allow_nan=False)
+    assert told['smallest_detectable']['floats']['lost']['size'] is None
+
+
 def test_a_catch_that_comes_in_steps_is_named(caught):
     assert caught.verdict == 'NAMED', caught.reason
     assert caught.best.refit.names == ('catch_build_up',)
@@ -68,7 +79,7 @@ def test_a_sensor_that_jumps_is_seen_to_do_so(coarse, clean):
     assert late
     assert changes(clean.score_test) == ()
     parts = tuple(
-        replace(part, measured=part.measured + 4.0 * (np.array(part.channels) == 'net_depth'))
+        replace(part, measured=part.measured + 6.0 * (np.array(part.channels) == 'net_depth'))
         if part.window in late
         else part
         for part in clean.score_test.fit.windows

@@ -17,7 +17,7 @@ from trawl_ros.effects.registry import catalogue
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
 
-TURN = 3.5
+TURN = 5.0
 """Degrees that boards are turned by a shackle in a wrong hole."""
 
 RIVALS = ('board_rigging', 'net_drag', 'spread_sensor')
@@ -81,11 +81,11 @@ def test_the_right_repair_makes_nothing_worse(coarse, rerigged):
 
 
 def test_a_wrong_repair_makes_something_worse(coarse, rerigged):
-    """A net of a quarter more drag for what the boards do."""
+    """A net of half as much drag again for what the boards do."""
     predictor = Predictor(build_model(coarse), without=rerigged.baseline)
     (drag,) = [own for own in rerigged.score_test.wanted if own.name == 'net_drag']
     wrong = refitted(predictor, rerigged.base, rerigged.score_test, (drag,))
-    values = np.concatenate((rerigged.base.estimate.values, [1.25, 0.0]))
+    values = np.concatenate((rerigged.base.estimate.values, [1.5, 0.0]))
     wrong = replace(wrong, estimate=replace(wrong.estimate, values=values))
     compared = on_holdout(predictor, rerigged.base, wrong, rerigged.split.kept_back)
     (opening,) = [own for own in compared if own.name == 'vertical_opening']

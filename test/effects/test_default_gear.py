@@ -17,7 +17,7 @@ from trawl_ros.solver.equilibrium import steady_state
 @pytest.fixture(scope='module')
 def affected(gear, tmp_path_factory):
     path: Path = tmp_path_factory.mktemp('gear') / 'affected.yaml'
-    drag = EffectRecord(name='net_drag', values={'factor': 1.3})
+    drag = EffectRecord(name='net_drag', values={'factor': 1.5})
     path.write_text(gear_text(gear.model_copy(update={'effects': (drag,)})))
     return load_gear(path)
 

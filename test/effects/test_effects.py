@@ -10,6 +10,8 @@ from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.gear.records import FloatRecord
+from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
@@ -23,6 +25,14 @@ def strong(effect):
     values = effect.neutral + np.array([0.5 * parameter.std for parameter in effect.parameters])
     # The ground lies where the footrope is.
     return np.array([2000.0, 95.0]) if effect.name == 'bottom_contact' else values
+
+
+@pytest.fixture(scope='module')
+def with_floats(gear):
+    """The coarse gear with floats along its headrope, of which some may be lost."""
+    floats = FloatRecord(buoyancy_n=14000.0, density_kg_m3=300.0, drag_area_m2=1.4)
+    netting = gear.netting.model_copy(update={'around': 12})
+    return build_model(gear.model_copy(update={'netting': netting, 'floats': floats}))
 
 
 @pytest.fixture(scope='module')
@@ -47,8 +57,11 @@ def test_where_it_is_neutral_it_does_nothing(model, coefficients, plain, name):
 
 
 @pytest.mark.parametrize('name', [name for name in NAMES if catalogue()[name].fitted])
-def test_it_has_the_derivatives_it_claims(model, coefficients, plain, name):
+def test_it_has_the_derivatives_it_claims(model, with_floats, coefficients, plain, name):
     effect = catalogue()[name]
+    if name == 'floats':
+        model = with_floats
+        plain = Predictor(model).predict(coefficients, *INPUTS, start=plain.state)
     predictor = Predictor(model, free=(effect,), at=AT)
     here = np.concatenate((coefficients, strong(effect), INPUTS))
 

@@ -128,8 +128,8 @@ def test_where_the_gear_touches_the_seabed_the_file_and_the_step_are_named(
     with pytest.raises(ScenarioError, match=r'trial\.yaml: start: the .* touches the seabed'):
         Trial(load(tmp_path, TRIAL + shallow), model=model)
     bank = (
-        'sea: {seabed: {direction_deg: 90, profile: [{distance_m: -560, depth_m: 170}, '
-        '{distance_m: -480, depth_m: 108}, {distance_m: -400, depth_m: 98}]}}\n'
+        'sea: {seabed: {direction_deg: 90, profile: [{distance_m: -556, depth_m: 232}, '
+        '{distance_m: -476, depth_m: 148}, {distance_m: -396, depth_m: 138}]}}\n'
     )
     trial = Trial(load(tmp_path, TRIAL + bank), model=model)
     # Both sides are as deep but for rounding: which of them is named first is chance.

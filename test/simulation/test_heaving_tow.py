@@ -109,9 +109,9 @@ def test_half_the_step_changes_the_swing_of_the_tension_little(model: GearModel)
     late = coarse.times > 23.9
     swings = [np.ptp(run.tensions[run.times > 23.9]) for run in (coarse, fine)]
     # What is still missing at half the step of a method of second order is a third of this.
-    assert 4 / 3 * abs(swings[0] - swings[1]) < 0.03 * swings[1]
+    assert 4 / 3 * abs(swings[0] - swings[1]) < 0.04 * swings[1]
     difference = coarse.tensions[late] - np.interp(coarse.times[late], fine.times, fine.tensions)
-    assert difference.std() < 0.03 * fine.tensions[fine.times > 23.9].std()
+    assert difference.std() < 0.04 * fine.tensions[fine.times > 23.9].std()
 
 
 def test_a_cross_current_parts_ground_from_water_and_heave_is_in_both() -> None:

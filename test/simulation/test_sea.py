@@ -69,7 +69,7 @@ def test_the_lowest_corner_of_a_door_is_what_touches(model: GearModel) -> None:
 def test_a_tow_ends_where_a_bank_rises_into_the_gear(model: GearModel) -> None:
     deepest = -Simulation(model, START).now.motion.state.nodes[:, 2].min()
     # High enough for the doors, too low for the warps before them.
-    bank = Seabed(0.0, np.array([-560.0, -480.0, -400.0]), np.array([deepest + 20.0, 108.0, 98.0]))
+    bank = Seabed(0.0, np.array([-556.0, -476.0, -396.0]), np.array([deepest + 20.0, 148.0, 138.0]))
     simulation = Simulation(model, START, period=0.25, sea=Sea(seabed=bank))
 
     def advance() -> None:

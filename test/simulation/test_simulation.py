@@ -55,15 +55,20 @@ def test_it_starts_in_the_equilibrium_of_its_command_and_stays_there(model: Gear
 
 
 def test_the_same_commands_give_the_same_bits_also_after_a_reset(model: GearModel) -> None:
-    def tow(simulation: Simulation) -> np.ndarray:
+    def tow(simulation: Simulation) -> list[np.ndarray]:
         simulation.command = Command(503.0, 498.0, 2.2, 0.002)
-        return np.array([numbers(advance(simulation, 5)) for _ in range(6)])
+        return [numbers(advance(simulation, 5)) for _ in range(6)]
+
+    def same(found: list[np.ndarray], expected: list[np.ndarray]) -> None:
+        # The number of points of the net's section changes along the tow.
+        for here, there in zip(found, expected, strict=True):
+            np.testing.assert_array_equal(here, there)
 
     simulation = Simulation(model, START)
     one = tow(simulation)
     simulation.reset()
-    np.testing.assert_array_equal(one, tow(simulation))
-    np.testing.assert_array_equal(one, tow(Simulation(model, START)))
+    same(one, tow(simulation))
+    same(one, tow(Simulation(model, START)))
 
 
 def test_the_winches_haul_at_their_speed_and_the_gear_follows(model: GearModel) -> None:
@@ -83,7 +88,7 @@ def test_after_a_haul_it_settles_in_the_equilibrium_of_the_new_length(model: Gea
     simulation = Simulation(model, START, period=0.5)
     before = simulation.truth()
     simulation.command = replace(START, port_length=485.0, starboard_length=485.0)
-    after = advance(simulation, 2 * 1200)
+    after = advance(simulation, 2 * 1600)
     wanted = steady_state(model, 485.0, 2.1).observables
     for was, found, expected in (
         (-before.doors[0].position[2], -after.doors[0].position[2], wanted.port_door_depth),

@@ -48,8 +48,9 @@ def test_bowed_netting_pulls_everywhere_and_hardly_changes_the_gear(
     soft = netting(gear, model.gear.netting.around, 317.0)
     state, _, residual = cold_start(soft, 0.0, found.tow)
     assert residual < TOLERANCE
-    assert (bar_tensions(model, found.state, found.tow) == 0.0).any()
-    assert (bar_tensions(soft, state, found.tow) > 0.0).all()
+    netted = soft.bars.bow > 0.0
+    assert (bar_tensions(model, found.state, found.tow)[netted] == 0.0).any()
+    assert (bar_tensions(soft, state, found.tow)[netted] > 0.0).all()
     spread, opening = (
         getattr(observe(soft, state, found.tow), name) / getattr(found.observables, name) - 1.0
         for name in ('door_spread', 'vertical_opening')

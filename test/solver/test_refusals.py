@@ -18,7 +18,7 @@ from trawl_ros.solver.stability import stability
 def test_an_unstable_root_is_refused(model: GearModel, steady: SteadyState) -> None:
     # With the other sign of b3 the board is pushed on by flow along its span.
     values = model.coefficients.copy()
-    values[COEFFICIENTS.index('b3')] *= -1.0
+    values[COEFFICIENTS.index('b3')] *= -2.0
     driven = model.with_coefficients(values)
     point = OperatingPoint(500.0, 500.0, 2.1)
     root = find_equilibrium(driven, point, steady.equilibrium)
@@ -37,7 +37,7 @@ def test_gear_that_breaks_the_surface_is_refused(
     assert time.process_time() - before < 20.0
 
 
-@pytest.mark.parametrize('speed', [0.5, 1.0])
+@pytest.mark.parametrize('speed', [0.3, 0.5])
 def test_gear_that_is_towed_too_slowly_is_refused_in_bounded_time(
     model: GearModel, speed: float
 ) -> None:
@@ -57,9 +57,9 @@ def test_a_tow_slowed_down_is_refused_from_where_it_was(
 
 
 def test_a_collapsed_board_is_refused(model: GearModel) -> None:
-    points = np.array([[0.32, -0.25, -0.49], [-0.27, -0.51, 1.71], [-0.33, -0.18, -2.23]])
+    turned = model.with_board(installation=(np.radians(-20.0), 0.0, 0.0))
     with pytest.raises(NoSteadyState, match='only a collapsed state was found'):
-        steady_state(model.with_board(points=points), 500.0, 2.1)
+        steady_state(turned, 500.0, 2.1)
 
 
 def test_a_board_with_far_other_forces_is_refused_with_its_moments() -> None:
@@ -74,13 +74,11 @@ def test_a_board_with_far_other_forces_is_refused_with_its_moments() -> None:
     assert caught.value.reason == 'no balance'
 
 
-def test_a_board_beyond_the_range_of_its_law_is_refused(
-    model: GearModel, steady: SteadyState
-) -> None:
-    # Half the lift leaves the boards so steep that eq. 14 no longer holds.
-    turned = model.with_board(installation=(np.radians(18.0), 0.0, 0.0))
+def test_a_board_beyond_the_range_of_its_law_is_refused(model: GearModel) -> None:
+    # The warp pulls so far aft that the boards turn across the flow, where eq. 14 does not hold.
+    behind = model.with_board(points=model.board.points - [[0.3, 0.0, 0.0], [0.0] * 3, [0.0] * 3])
     with pytest.raises(NoSteadyState, match=r'outside the range of its law \(40°\)'):
-        steady_state(turned, 500.0, 2.1, start=steady.equilibrium)
+        steady_state(behind, 500.0, 2.1)
 
 
 def test_a_shape_that_still_moves_at_another_speed_gives_no_state_of_that_speed(
@@ -116,9 +114,11 @@ def test_boards_that_lie_over_are_told_with_their_last_state(default_model: Gear
 
 
 def test_of_what_is_unstable_the_growing_motion_is_named(default_model: GearModel) -> None:
-    with pytest.raises(NoSteadyState, match='heave of one board against the other grows') as told:
-        steady_state(default_model, 300.0, 1.7)
-    assert told.value.remedy.startswith('`trawl gear state kaifuha --warp 300 --speed 1.7`')
+    turned = default_model.with_board(installation=(np.radians(15.0), 0.0, 0.0))
+    start = find_equilibrium(default_model, OperatingPoint(500.0, 500.0, 2.1))
+    with pytest.raises(NoSteadyState, match='heave of one board against the other, swing') as told:
+        steady_state(turned, 500.0, 2.1, start=start)
+    assert told.value.remedy.startswith('`trawl gear state kaifuha --warp 500 --speed 2.1`')
     assert getattr(told.value, '__notes__', []) == [told.value.remedy]
 
 
@@ -146,10 +146,9 @@ def test_boards_that_do_not_stay_upright_are_told_with_the_moments_on_them(
 
 
 def test_a_gear_whose_boards_lie_on_their_backs_is_refused_though_it_is_stable(
-    gear: GearRecord,
+    model: GearModel,
 ) -> None:
-    coarse = gear.netting.model_copy(update={'around': 12})
-    fallen = build_model(gear.model_copy(update={'netting': coarse}))
+    fallen = model.with_board(installation=(np.radians(15.0), 0.0, 0.0))
     with pytest.raises(NoSteadyState) as refusal:
-        steady_state(fallen, 500.0, 1.6)
+        steady_state(fallen, 500.0, 2.1)
     assert refusal.value.reason in {'collapsed', 'lift lost'}

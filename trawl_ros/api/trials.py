@@ -276,7 +276,7 @@ def plan_trial(
     >>> limits = Limits(lengths=(300.0, 400.0), speeds=(2.1, 2.3), shorter=())
     >>> plan = trawl_ros.plan_trial('coarse.yaml', hours=1.5, limits=limits)
     >>> len(plan.gains)
-    5
+    4
     """
     from trawl_ros.estimation.planning.plan import plan_for
 

@@ -113,7 +113,7 @@ class NoSteadyState(TrawlError):
     ...     trawl_ros.steady_state(model, warp_length=50.0, speed=2.1)
     ... except trawl_ros.NoSteadyState as reason:
     ...     print(f'{reason.reason}: {reason}')
-    surfaced: warp 50 m at 2.1 m/s: the gear breaks the surface by 1.3 m
+    surfaced: warp 50 m at 2.1 m/s: the gear breaks the surface by 9.3 m
     """
 
     def __init__(self, message: str, reason: Refusal = 'none found', remedy: str = '') -> None:

@@ -230,8 +230,8 @@ def _refuse_keys_of_0_1(given: dict[str, object]) -> None:
         raise ValueError(
             f'found {", ".join(found)} of a gear file of 0.1, expected none: loads act in one '
             'frame now, aft, outward and down (docs/from_0_1.md). Delete these keys and run '
-            'trawl trim; or, to keep what force_axes: flow, moment_signs: [-1, 1, 1] and slip_sign: -1 did, '
-            'reverse the signs of c3, b5, a6 and c6'
+            'trawl trim; or, to keep what force_axes: flow, moment_signs: [-1, 1, 1] and '
+            'slip_sign: -1 did, reverse the signs of c3, b5, a6 and c6'
         )
 
 

@@ -22,7 +22,7 @@ class Observables:
     >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
     >>> seen = trawl_ros.steady_state(model, 500.0, 2.1).observables
     >>> round(seen.warp_tension / 1000), seen.array().shape
-    (157, (22,))
+    (147, (22,))
     """
 
     door_spread: float

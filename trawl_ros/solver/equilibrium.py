@@ -240,7 +240,7 @@ def steady_state(
     >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
     >>> seen = trawl_ros.steady_state(model, warp_length=500.0, speed=2.1).observables
     >>> print(f'{seen.door_spread:.0f} m apart, {seen.door_depth:.0f} m deep')
-    144 m apart, 98 m deep
+    156 m apart, 138 m deep
     """
     port, starboard = map(float, np.broadcast_to(np.asarray(warp_length, float), 2))
     model, point = with_effects(model, (port, starboard), speed, heading)

@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
-from trawl_ros.diagnosis.onset.monitor import BEFORE, NOT_CLOSE, OnsetMonitor
+from trawl_ros.diagnosis.onset.monitor import BEFORE, NEARER, NOT_CLOSE, OnsetMonitor
 from trawl_ros.diagnosis.onset.stretches import LIVE, StretchCutter
 from trawl_ros.diagnosis.onset.watch import LEARNS, REST
 from trawl_ros.effects.registry import catalogue
@@ -95,12 +95,12 @@ def test_where_the_model_cannot_be_towed_boards_nearer_to_those_of_the_gear_file
 ):
     prior, told = board_prior(onset_gear), []
     values = prior.start.copy()
-    values[COEFFICIENTS.index('c4')] += 0.9 * prior.std[COEFFICIENTS.index('c4')]
+    values[COEFFICIENTS.index('c4')] += 0.55 * prior.std[COEFFICIENTS.index('c4')]
     known = Knowledge(values, np.diag((0.4 * prior.std) ** 2))
     monitor = OnsetMonitor(onset_gear, known, effects=FEW, on_stretch=told.append)
-    assert [found for sample in onset_samples(12) for found in monitor.feed(sample)] == []
+    assert [found for sample in onset_samples(14) for found in monitor.feed(sample)] == []
     refused = [one for one in told if one.why_not.startswith('the model cannot be towed')]
-    assert len(refused) == 1
+    assert 1 <= len(refused) <= len(NEARER)
     assert monitor.watched > 3
     assert monitor.why_not == ''
 

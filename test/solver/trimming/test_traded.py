@@ -73,7 +73,7 @@ def test_a_copy_of_the_gear_file_has_what_was_found(coarse_gear: Path, tmp_path:
     assert '# with ' in result.output, result.output
     assert f'# written: {out}' in result.output
     gear = load_gear(out)
-    assert gear.bridles[1].length_m is not None
+    assert any(bridle.length_m is not None for bridle in gear.bridles)
     if result.exit_code == 0:
         seen = steady_state(build_model(gear), 400.0, 2.1).observables
         assert seen.door_spread == pytest.approx(187.0, rel=0.03)

@@ -84,7 +84,7 @@ class Advice:
     >>> from trawl_ros.solver.advising.advice import advice
     >>> found = advice(model, warp_length=200.0, speed=3.5)
     >>> found.refusal.reason, round(found.limit_speed, 1)
-    ('surfaced', 3.2)
+    ('surfaced', 2.9)
     """
 
     refusal: NoSteadyState

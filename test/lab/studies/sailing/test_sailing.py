@@ -29,8 +29,8 @@ def test_windows_of_the_first_states_stay_as_they_were(sea):
 
 
 def test_a_state_in_which_the_board_cannot_be_towed_costs_its_time(sea, coarse_gear):
-    assert sea.look(Manoeuvre(500.0, 500.0, 1.0)) is None
-    legs = [Leg(Manoeuvre(300.0, 300.0, 2.5), 15.0), Leg(Manoeuvre(500.0, 500.0, 1.0), 15.0)]
+    assert sea.look(Manoeuvre(500.0, 500.0, 0.5)) is None
+    legs = [Leg(Manoeuvre(300.0, 300.0, 2.5), 15.0), Leg(Manoeuvre(500.0, 500.0, 0.5), 15.0)]
     course = planned_course(sea, load_gear(coarse_gear), legs)
     assert course.hours == 0.5
     assert (len(course.states), course.refused) == (1, 1)
