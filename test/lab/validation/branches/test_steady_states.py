@@ -50,8 +50,8 @@ def test_a_walk_reaches_what_neighbours_lead_to_and_searches_the_rest_cold(
         (1, 0): 'usable',
         (1, 1): 'usable',
     }
-    # Cold at the start, then once from the neighbour and, a third of them, cold once more.
-    assert lattice.at(1, 1).searches == 2
+    # Cold at the start, then once from each neighbour.
+    assert lattice.at(1, 1).searches == 3
     assert lattice.at(0, 1).searches == 1
 
 

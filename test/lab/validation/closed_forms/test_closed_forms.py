@@ -13,7 +13,7 @@ from trawl_ros.lab.validation.closed_forms.board_law import compare_laws
 from trawl_ros.lab.validation.closed_forms.catenary import END, START, elastic_catenary
 from trawl_ros.lab.validation.closed_forms.energy_budget import WireHaul
 from trawl_ros.lab.validation.closed_forms.power import WORKS, Ledger, strain_energy
-from trawl_ros.model.bar import SLACK_WIDTH
+from trawl_ros.model.bar import SLACK_WIDTH, SLACKEST_STRAIGHT
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.line import taut
 from trawl_ros.model.state import State, Tow
@@ -89,8 +89,8 @@ def test_the_weight_of_a_sinking_line_is_read_off_its_height() -> None:
 def test_drag_on_a_sinking_line_takes_the_power_of_its_law() -> None:
     model, state, tow = lowered_line()
     powers = dict(zip(WORKS, Ledger.of(model).powers(at_rest(state), tow), strict=True))
-    # Drag of a slack line is that of the distance of its ends.
-    drag = 0.5 * 1025.0 * 1.2 * 0.032 * 199.9 / 200.0
+    # A slack line drags on the distance of its ends, as a part of where its slack begins.
+    drag = 0.5 * 1025.0 * 1.2 * 0.032 * 199.9 / (200.0 * SLACKEST_STRAIGHT)
     assert powers.pop('ropes_drag') == pytest.approx(-drag * 200.0)
     # Either hold carries half of the bar of 40 m that hangs on it.
     assert powers.pop('ship') == pytest.approx((drag - 28.0) * 40.0)

@@ -27,7 +27,7 @@ def test_warp_and_bridles_are_fine_enough_even_for_a_coarse_net_and_the_rest_has
     for check in outcome.rows:
         assert np.isfinite(check.value)
         assert check.ok or 'numerical meshes around' in check.note
-    assert checks['angles_straight'].note.endswith('within 0.5°: 24.')
+    assert checks['angles_straight'].note.endswith('within 0.5°: 12.')
     *by_length, bowed = outcome.tables
     assert {len(table.rows) for table in by_length} == {len(OBSERVABLES)}
     assert [row[0] for row in bowed.rows] == ['straight', 'straight', 'bowed', 'bowed']
