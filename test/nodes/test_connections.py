@@ -26,7 +26,6 @@ from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 103
 WINCH = 'truth/winch'
 BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 TRANSIENT = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -61,7 +60,7 @@ class Late(TrawlNode):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 
@@ -162,7 +161,7 @@ BURST = """\
 import sys, time, rclpy
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
-rclpy.init(domain_id={domain})
+rclpy.init()
 node = rclpy.create_node('talker', namespace='trawl')
 sender = node.create_publisher(JointState, '{topic}', QoSProfile(depth=5))
 while not sender.get_subscription_count():
@@ -183,9 +182,9 @@ def test_messages_that_get_lost_are_counted_and_said(graph):
     lookout = graph.add(Lookout)
     ear = graph.add(lambda **kwargs: TrawlNode('ear', **kwargs))
     ear.listen(WINCH, lambda message: None, CONSUMER)
-    code = BURST.format(domain=DOMAIN, topic=WINCH, number=number)
+    code = BURST.format(topic=WINCH, number=number)
     talker = subprocess.Popen(
-        [sys.executable, '-c', code], stdin=subprocess.PIPE, env=dict(os.environ)
+        [sys.executable, '-c', code], stdin=subprocess.PIPE, env={**os.environ, **graph.environment}
     )
 
     def counts():

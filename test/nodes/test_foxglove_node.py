@@ -32,7 +32,6 @@ from trawl_ros.records.topics import TOPICS, absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 227
 LOCAL = '127.0.0.1'
 PROTOCOL = 'foxglove.sdk.v1'
 BACKLOG = 20
@@ -94,7 +93,7 @@ class Viewer:
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

@@ -32,7 +32,6 @@ from trawl_ros.sentences.table import COMMANDS, load_table  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 222
 TOPICS = (
     'winch/joint_states',
     'door/port/pressure',
@@ -78,7 +77,7 @@ class Ship(TrawlNode):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

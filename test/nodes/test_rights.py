@@ -28,7 +28,6 @@ from trawl_ros.records.topics import CLOCK, STATIC_TRANSFORMS, TRANSFORMS, absol
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 116
 NODES = (
     AutopilotNode,
     AutotrawlNode,
@@ -63,7 +62,7 @@ AT_TIMES = {
 @pytest.fixture(scope='module')
 def used(open_graph, gear_path, tmp_path_factory):
     """Names of what each node publishes, hears, answers and calls while all of them are there."""
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         gear = {'gear': str(gear_path)}
         parameters = {
             'SimNode': gear,

@@ -35,7 +35,6 @@ from trawl_ros.records.samples import (  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 222
 STEP_NS = SECOND // 2
 LOG = '/trawl/vessel/velocity_water'
 TARGETS = tuple(TrialTarget(port=length, starboard=length, speed=2.1) for length in (400.0, 350.0))
@@ -98,7 +97,7 @@ class Ship(TrawlNode):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from trawl_ros.core.errors import TrawlError
@@ -91,6 +92,7 @@ class DiscrepancyNode(TrawlNode):
         self._instruments = OneSourceEach()
         self._rewinding = Rewinding()
         self._verdict: list[Status] = []
+        self._telling = Lock()
         self._open_book()
         self.advertise(FINDINGS)
         self._watching = WatchingThread(self._look_at, self._publish)
@@ -195,8 +197,11 @@ class DiscrepancyNode(TrawlNode):
         self._send_findings()
 
     def _send_findings(self) -> None:
-        told = [onset_status(one, one.number in self._acknowledged) for one in self._newest_told()]
-        self.send(FINDINGS, diagnostic_array(self._reached.stamp, [*self._verdict, *told]))
+        # Two workers and the operator come here; of two messages the newer one must go out last.
+        with self._telling:
+            acknowledged = self._acknowledged
+            told = [onset_status(one, one.number in acknowledged) for one in self._newest_told()]
+            self.send(FINDINGS, diagnostic_array(self._reached.stamp, [*self._verdict, *told]))
 
     def _newest_told(self) -> list[Finding]:
         """Newest findings of what has begun."""

@@ -13,7 +13,6 @@ from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 100
 WALL_CLOCK = 1_700_000_000 * SECOND
 """Stamps of a source that does not publish a clock."""
 
@@ -39,7 +38,7 @@ class Reporter(TrawlNode):
 
 @pytest.fixture(scope='module')
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

@@ -1,6 +1,5 @@
 """However a node ends, it does so with an exit code, and with a sentence where one is due."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -12,7 +11,6 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 91
 NODE = """\
 import sys
 from trawl_ros.core.errors import BagError
@@ -38,13 +36,12 @@ sys.exit(run(Tried, sys.argv))
 
 
 @pytest.fixture
-def start(tmp_path):
+def start():
     started = []
 
     def start_node(act, *arguments):
         process = subprocess.Popen(
             [sys.executable, '-c', NODE.format(act=act), *arguments],
-            env={**os.environ, 'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(tmp_path)},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -7,6 +7,7 @@ from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
@@ -32,9 +33,12 @@ from trawl_ros.nodes.runtime.message_classes import message_class
 from trawl_ros.nodes.runtime.qos import offered, overriding
 from trawl_ros.nodes.runtime.source import Source
 from trawl_ros.nodes.runtime.traffic import Traffic
+from trawl_ros.nodes.runtime.turns import Turns
 from trawl_ros.records.topics import CLOCK, NAMESPACE, find_topic
 
 DIAGNOSTICS = '/diagnostics'
+
+RCLError = rclpy_implementation.RCLError
 
 
 class ConnectedNode(Node):
@@ -51,6 +55,8 @@ class ConnectedNode(Node):
     ----------
     traffic : Traffic
         Counts of messages in and out.
+    turns : Turns
+        Turns of its callbacks.
     exit_code : int or None
         Set by `end`; whoever spins the node then stops.
     """
@@ -61,6 +67,7 @@ class ConnectedNode(Node):
         self.traffic = Traffic()
         self._refused: dict[str, str] = {}
         self._sources: dict[str, Source] = {}
+        self.turns = Turns()
         super().__init__(name, **kwargs)
         self.exit_code: int | None = None
         self._senders: dict[str, Publisher] = {}
@@ -98,7 +105,13 @@ class ConnectedNode(Node):
     def send_bytes(self, topic: str, data: bytes) -> None:
         """Publish a message that is CDR already."""
         sender = self._senders[topic]
-        sender.publish(data)
+        try:
+            sender.publish(data)
+        except RCLError:
+            # Shut down in the middle of a callback or of a thread's work, ROS hears nothing more.
+            if self.context.ok():
+                raise
+            return
         self.traffic.count('published', sender.topic_name)
 
     def create_subscription(
@@ -133,6 +146,7 @@ class ConnectedNode(Node):
                 lambda reason: self.end(1, reason),
                 source,
                 single,
+                self.turns,
             ),
             *args,
             # Asked for an event while another one comes in, the middleware locks up for ever.
@@ -200,7 +214,10 @@ class ConnectedNode(Node):
 
         def answer(request: Any, response: Any) -> Any:
             try:
-                response.success, response.message = True, act()
+                with self.turns as mine:
+                    if not mine:
+                        raise TrawlError('the node is ending')
+                    response.success, response.message = True, act()
             except Exception as reason:
                 response.success, response.message = False, self.refusal(service, reason)
             return response

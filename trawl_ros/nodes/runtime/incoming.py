@@ -14,6 +14,7 @@ from trawl_ros.messages.cdr import deserialize
 from trawl_ros.messages.stamps import from_time, stamp_of
 from trawl_ros.nodes.runtime.rewinding import CONFIRM
 from trawl_ros.nodes.runtime.source import Source
+from trawl_ros.nodes.runtime.turns import Turns
 from trawl_ros.records.topics import CLOCK
 
 FAR_NS = 60 * SECOND
@@ -48,6 +49,8 @@ class Incoming:
         Judge of who has sent a message; it counts what gets lost.
     single
         True if only what its source has sent is used.
+    turns
+        Of the node's callbacks.
     """
 
     # Asked for both arguments, rclpy gives the message's number along with it.
@@ -61,7 +64,9 @@ class Incoming:
         end: Callable[[str], None],
         source: Source,
         single: bool,
+        turns: Turns,
     ) -> None:
+        self._turns = turns
         self._topic = topic
         self._use = use
         self._refuse = refuse
@@ -73,6 +78,11 @@ class Incoming:
         """Handle a message with the information that ROS has of it."""
         # rclpy's own executor hands over message and info, its events executor a pair of them.
         message, info = arrived if len(arrived) == 2 else arrived[0]
+        with self._turns as mine:
+            if mine:
+                self._handle(message, info)
+
+    def _handle(self, message: Any, info: Any) -> None:
         try:
             alien = not self._source.take(info.get('publication_sequence_number'))
             if alien and self._single:

@@ -1,5 +1,6 @@
 """Base class of all nodes: parameters, diagnostics, a clean end."""
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, ClassVar
@@ -14,6 +15,7 @@ from std_srvs.srv import Trigger
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import DIAGNOSIS
+from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.nodes.runtime.awaiting_service import PERIOD_S, Answer, AwaitingService
@@ -34,7 +36,7 @@ from trawl_ros.records.topics import CLOCK
 DIAGNOSTICS_PERIOD_S = 1.0
 
 GREETING_S = 0.1
-"""Period at which it is looked whether anybody listens to the first of them."""
+"""Period of the same timer until the first report, which goes out as soon as somebody listens."""
 
 
 class TrawlNode(ConnectedNode):
@@ -70,11 +72,12 @@ class TrawlNode(ConnectedNode):
         self.headway = Headway()
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._said: dict[str, tuple[int, str]] = {}
-        self._closed = False
         self.parameters = Parameters(self, self.SPECS, self.objection, self.parameter_changed)
         self.advertise(DIAGNOSTICS)
-        self.every(DIAGNOSTICS_PERIOD_S, self._diagnose)
-        self._greeting = self.every(GREETING_S, self._greet)
+        # Its period changes after the greeting. Cancelled, a timer that an executor has queued
+        # already would raise there.
+        self._greet_until: float | None = time.monotonic() + DIAGNOSTICS_PERIOD_S
+        self._reporter = self.every(GREETING_S, self._report)
 
     def objection(self, name: str, value: Any) -> str | None:
         """Return an objection to a live parameter's value; None without one."""
@@ -104,7 +107,9 @@ class TrawlNode(ConnectedNode):
         def call() -> None:
             # Raised on, it would come out of the executor, or end other nodes too.
             try:
-                callback()
+                with self.turns as mine:
+                    if mine:
+                        callback()
             except TrawlError as reason:
                 self.end(1, str(reason))
             except Exception as reason:
@@ -136,9 +141,8 @@ class TrawlNode(ConnectedNode):
 
     def close(self) -> None:
         """Finish work and report the final counts; a second call does nothing."""
-        if self._closed:
+        if not self.turns.end():
             return
-        self._closed = True
         self.finish_work()
         if self.context.ok():
             self._diagnose()
@@ -174,17 +178,23 @@ class TrawlNode(ConnectedNode):
         clock = replace(clock, values={**clock.values, **self.headway.report()})
         return [_bounded(status) for status in (self._traffic_status(), clock, *self.statuses())]
 
-    def _greet(self) -> None:
-        """Report as soon as somebody listens, and not only after the first period."""
+    def _report(self) -> None:
+        """Report each second; for the first time as soon as somebody listens."""
+        if self._greet_until is not None:
+            if time.monotonic() < self._greet_until and not self._has_listener():
+                return
+            self._greet_until = None
+            self._reporter.timer_period_ns = round(DIAGNOSTICS_PERIOD_S * SECOND)
+        self._diagnose()
+
+    def _has_listener(self) -> bool:
         if not self._senders[DIAGNOSTICS].get_subscription_count():
-            return
+            return False
         # A clock that is not heard of yet would be reported as missing.
         simulated = self.get_parameter('use_sim_time').value
-        if not simulated or self.get_publishers_info_by_topic(CLOCK.name):
-            self._diagnose()
+        return not simulated or bool(self.get_publishers_info_by_topic(CLOCK.name))
 
     def _diagnose(self) -> None:
-        self._greeting.cancel()
         statuses = self.all_statuses()
         for status in statuses:
             self.say(status.name, status.level, status.message)
