@@ -14,8 +14,8 @@ from trawl_ros.messages.cdr import STORE, serialize
 from trawl_ros.messages.commands import winch_command
 from trawl_ros.messages.stamps import header
 from trawl_ros.messages.truth_to_messages import clock_message
+from trawl_ros.nodes.graph.source import Source
 from trawl_ros.nodes.runtime.incoming import Incoming, Leaps, believing_clock, decoding
-from trawl_ros.nodes.runtime.source import Source
 from trawl_ros.nodes.runtime.turns import Turns
 
 JOINTS = 'sensor_msgs/msg/JointState'

@@ -19,8 +19,8 @@ from trawl_ros.messages.stamps import header, stamp_of  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.messages.truth_to_messages import clock_message  # noqa: E402
 from trawl_ros.nodes import trial_node  # noqa: E402
+from trawl_ros.nodes.graph.graph_checks import SYNC  # noqa: E402
 from trawl_ros.nodes.runtime.credit import HEADER  # noqa: E402
-from trawl_ros.nodes.runtime.graph_checks import SYNC  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.runtime.qos import CONSUMER, LATCHED  # noqa: E402
 from trawl_ros.nodes.trial_node import TrialNode  # noqa: E402

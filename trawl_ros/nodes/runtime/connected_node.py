@@ -18,10 +18,11 @@ from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import SENTENCE
 from trawl_ros.messages.cdr import serialize
-from trawl_ros.nodes.runtime.graph_checks import (
+from trawl_ros.nodes.graph.graph_checks import (
     SHARED,
     of_one_node,
 )
+from trawl_ros.nodes.graph.source import Source
 from trawl_ros.nodes.runtime.incoming import (
     Incoming,
     believing_clock,
@@ -31,7 +32,6 @@ from trawl_ros.nodes.runtime.incoming import (
 )
 from trawl_ros.nodes.runtime.message_classes import message_class
 from trawl_ros.nodes.runtime.qos import offered, overriding
-from trawl_ros.nodes.runtime.source import Source
 from trawl_ros.nodes.runtime.traffic import Traffic
 from trawl_ros.nodes.runtime.turns import Turns
 from trawl_ros.records.topics import CLOCK, NAMESPACE, find_topic

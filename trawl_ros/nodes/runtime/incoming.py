@@ -12,8 +12,8 @@ from trawl_ros.core.limits import IMAGE_BYTES, MESSAGE_BYTES, SCAN_BYTES, Limit
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import deserialize
 from trawl_ros.messages.stamps import from_time, stamp_of
+from trawl_ros.nodes.graph.source import Source
 from trawl_ros.nodes.runtime.rewinding import CONFIRM
-from trawl_ros.nodes.runtime.source import Source
 from trawl_ros.nodes.runtime.turns import Turns
 from trawl_ros.records.topics import CLOCK
 

@@ -18,13 +18,13 @@ from trawl_ros.core.limits import DIAGNOSIS
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
-from trawl_ros.nodes.runtime.awaiting_service import PERIOD_S, Answer, AwaitingService
-from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS, ConnectedNode
-from trawl_ros.nodes.runtime.graph_checks import (
+from trawl_ros.nodes.graph.graph_checks import (
     Listening,
     clock_status,
     connection_problems,
 )
+from trawl_ros.nodes.runtime.awaiting_service import PERIOD_S, Answer, AwaitingService
+from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS, ConnectedNode
 from trawl_ros.nodes.runtime.headway import Headway
 from trawl_ros.nodes.runtime.incoming import (
     error_of_program,

@@ -20,8 +20,8 @@ from rclpy.utilities import remove_ros_args
 
 from trawl_ros.core.errors import TrawlError, sentence_of
 from trawl_ros.core.foreign import short
-from trawl_ros.nodes.runtime import security
-from trawl_ros.nodes.runtime.discovery import announce_often
+from trawl_ros.nodes.graph import security
+from trawl_ros.nodes.graph.discovery import announce_often
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import misspelt
 
