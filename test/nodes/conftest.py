@@ -126,7 +126,7 @@ def no_viewer() -> Iterator[None]:
         put=lambda record: None, close=lambda: None,
     )  # fmt: skip
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(view_node, 'open_view', lambda parameters: nothing)
+        patch.setattr(view_node, 'open_view', lambda parameters, output: nothing)
         yield
 
 

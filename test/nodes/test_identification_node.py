@@ -12,7 +12,6 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from trawl_ros.bags.logs.import_log import import_log  # noqa: E402
 from trawl_ros.bags.writer import BagWriter  # noqa: E402
-from trawl_ros.core.errors import TrawlError  # noqa: E402
 from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.instruments.errors.instrument import SeedPlan  # noqa: E402
 from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
@@ -171,13 +170,6 @@ def test_stamps_that_go_back_start_it_anew(session):
     assert session.resets_after > session.resets_before
     assert session.last_status.values['windows'] == '1'
     assert session.last_status.values['revision'] == '1'
-
-
-def test_results_of_an_earlier_run_are_not_written_over(open_graph, tmp_path):
-    (tmp_path / 'identification.json').write_text('{}')
-    with open_graph() as graph, pytest.raises(TrawlError, match='not written over'):
-        graph.add(IdentificationNode, output=str(tmp_path))
-    assert (tmp_path / 'identification.json').read_text() == '{}'
 
 
 def test_measurements_at_sea_without_speed_and_spread_are_not_enough(

@@ -126,7 +126,7 @@ def test_a_tow_is_recorded_whole_and_every_process_ends_cleanly(tow):
     ('node', 'parameters', 'sentence'),
     [
         ('bag_recorder', {}, 'parameter output: missing'),
-        ('bag_recorder', {'output': '{full}'}, 'exists already and is not written over'),
+        ('bag_recorder', {'output': '{full}/mine.txt/bag'}, 'parameter output: '),
         ('bag_player', {'bag': '{full}/nothing'}, 'nothing: no such bag'),
         ('bag_player', {'bag': '{full}'}, 'expected a bag'),
         ('winch_node', {'instruments': 'unheard-of'}, 'there are: default.yaml'),

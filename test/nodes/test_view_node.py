@@ -47,7 +47,7 @@ def winch(second, length):
 
 def test_what_is_published_is_recorded_with_its_stamps(open_graph, tmp_path, monkeypatch):
     path = tmp_path / 'live.rrd'
-    monkeypatch.setattr(view_node, 'open_view', lambda parameters: recorded_to(path))
+    monkeypatch.setattr(view_node, 'open_view', lambda parameters, output: recorded_to(path))
     with open_graph() as graph:
         node = graph.add(ViewNode)
         ship = graph.add(lambda **kwargs: TrawlNode('ship', **kwargs))
@@ -106,7 +106,9 @@ def test_a_reading_that_is_none_is_not_drawn(tmp_path):
 
 
 def test_the_status_tells_what_was_given_up(open_graph, tmp_path, monkeypatch):
-    monkeypatch.setattr(view_node, 'open_view', lambda parameters: recorded_to(tmp_path / 'l.rrd'))
+    monkeypatch.setattr(
+        view_node, 'open_view', lambda parameters, output: recorded_to(tmp_path / 'l.rrd')
+    )
     with open_graph() as graph:
         node = graph.add(ViewNode)
         node._view.lost = 3

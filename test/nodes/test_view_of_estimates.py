@@ -37,7 +37,9 @@ def shown(open_graph, tight_tows, coarse_gear, estimate_listener, tmp_path_facto
     folder = tmp_path_factory.mktemp('shown')
     gear = str(coarse_gear)
     with pytest.MonkeyPatch.context() as patch, open_graph() as graph:
-        patch.setattr(view_node, 'open_view', lambda parameters: recorded_to(folder / 'live.rrd'))
+        patch.setattr(
+            view_node, 'open_view', lambda parameters, output: recorded_to(folder / 'live.rrd')
+        )
         viewer = graph.add(ViewNode, gear=gear)
         estimator = graph.add(IdentificationNode, gear=gear, **STEADY)
         watcher = graph.add(

@@ -5,6 +5,7 @@ import math
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from itertools import chain, count
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, TextIO
@@ -24,7 +25,7 @@ def empty_folder(path: Path, *, force: bool) -> Path:
         If there is something in it already, unless ``force`` allows replacing it, or if it cannot
         be written to.
     """
-    _require_writable(path, TrawlError)
+    require_writable(path, TrawlError)
     if path.is_dir() and any(path.iterdir()) and not force:
         raise TrawlError(
             f'{path}: holds files already, which are not written over; expected a new or empty '
@@ -43,12 +44,41 @@ def new_folder(path: Path, error: type[TrawlError]) -> Path:
     """
     if os.path.lexists(path):
         raise error(f'{path}: exists already and is not written over; expected a new path')
-    _require_writable(path, error)
+    require_writable(path, error)
     return path
 
 
-def _require_writable(path: Path, error: type[TrawlError]) -> None:
-    """Write a file without a name where the folder is or will be, which leaves nothing behind."""
+def free_path(path: Path, *, or_empty: bool = False, suffix: str = '') -> Path:
+    """Return a path, or the first free one of ``NAME_2``, ``NAME_3`` … where it is taken.
+
+    Parameters
+    ----------
+    path
+        The path.
+    or_empty
+        True if a folder without files is free too.
+    suffix
+        End of the name, behind the number.
+    """
+    name = path.name.removesuffix(suffix)
+    numbered = (path.with_name(f'{name}_{number}{suffix}') for number in count(2))
+    return next(one for one in chain((path,), numbered) if _is_free(one, or_empty))
+
+
+def _is_free(path: Path, or_empty: bool) -> bool:
+    if or_empty and path.is_dir():
+        return not any(path.iterdir())
+    return not os.path.lexists(path)
+
+
+def require_writable(path: Path, error: type[TrawlError]) -> None:
+    """Check that something can be written at a path, which leaves nothing behind.
+
+    Raises
+    ------
+    TrawlError
+        Of the type ``error``, if it cannot.
+    """
     try:
         with TemporaryFile(dir=_nearest(path)) as file:
             file.write(b'?')

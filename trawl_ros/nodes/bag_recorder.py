@@ -47,7 +47,8 @@ class BagRecorder(TrawlNode):
     """
 
     SPECS: ClassVar = (
-        Text('output', '', 'Folder of the bag; nothing may be there yet.', needed=True),
+        Text('output', '', 'Folder of the bag; where it exists, a number is put behind its '
+             'name.', needed=True),
         Names('topics', "Topics to record, or 'all'; by default those of the project."),
         Text('regex', '', 'Topics are recorded too whose full name has a match of this regular '
              'expression.'),
@@ -82,7 +83,7 @@ class BagRecorder(TrawlNode):
             {*NEVER, self.full_name(SYNC)},
         )
         self._bag = BagWriter(
-            self.parameters['output'],
+            self.new_path('output') or '',
             namespace=namespace,
             compression=self.parameters['compression'],
             max_file_bytes=self.parameters['max_bag_size'],

@@ -7,7 +7,6 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import empty_folder
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.onset.knowledge import of_identification
@@ -65,7 +64,8 @@ class DiscrepancyNode(TrawlNode):
     SPECS: ClassVar = (
         Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package: the '
              'gear as it is believed.'),
-        Text('output', '', 'Folder for the report, new or empty; none if empty.'),
+        Text('output', '', 'Folder for the report; where it holds files, a number is put behind '
+             'its name; none if empty.'),
         Number('baseline_tows', 0, 'tows', 0, 100, 'So many of the first tows are of a gear in '
                'order.', whole=True),
         Flag('watch', False, 'True if the tow is watched without pause for what begins in it.'),
@@ -80,8 +80,7 @@ class DiscrepancyNode(TrawlNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('discrepancy_node', **kwargs)
         parameters = self.parameters
-        output = parameters['output']
-        self._folder = empty_folder(Path(output), force=False) if output else None
+        self._folder = self.new_path('output', or_empty=True)
         self._gear = load_gear(parameters['gear'])
         self._finder = finder_for(self._gear, window_options(parameters))
         self._windows: list[SteadyWindow] = []

@@ -6,7 +6,6 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, ClassVar
 
-from trawl_ros.core.files import empty_folder
 from trawl_ros.estimation.checkpoint.file import load_checkpoint, save_checkpoint
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.from_gear import (
@@ -77,8 +76,8 @@ class IdentificationNode(TrawlNode):
              'always do.'),
         Flag('net', False, 'Whether drag and weight of the net are estimated along; else they are '
              'held as the gear file has them.'),
-        Text('output', '', 'Folder for identification.json and figures, new or empty; none if '
-             'empty.'),
+        Text('output', '', 'Folder for identification.json and figures; where it holds files, a '
+             'number is put behind its name; none if empty.'),
         Text('state', '', 'File that takes the state after each window, and from which a node that '
              'is started anew goes on; none if empty.'),
         Flag('motion', True, 'True if all of the tow is learned from, hauling and veering too, '
@@ -93,8 +92,8 @@ class IdentificationNode(TrawlNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('identification_node', **kwargs)
         parameters = self.parameters
-        output, truth, state = parameters['output'], parameters['truth'], parameters['state']
-        folder = empty_folder(Path(output), force=False) if output else None
+        truth, state = parameters['truth'], parameters['state']
+        folder = self.new_path('output', or_empty=True)
         known = true_coefficients(truth) if truth else None
         self._state = Path(state) if state else None
         self._gear = load_gear(parameters['gear'])

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, ClassVar
 
 from rclpy.clock import Clock
@@ -13,6 +14,7 @@ from rclpy.timer import Timer
 from std_srvs.srv import Trigger
 
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.files import free_path, require_writable
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import DIAGNOSIS
 from trawl_ros.core.time import SECOND
@@ -30,7 +32,7 @@ from trawl_ros.nodes.runtime.incoming import (
     error_of_program,
 )
 from trawl_ros.nodes.runtime.introduction import introduction
-from trawl_ros.nodes.runtime.parameters import Parameters, Spec
+from trawl_ros.nodes.runtime.parameters import ParameterError, Parameters, Spec
 from trawl_ros.records.topics import CLOCK
 
 DIAGNOSTICS_PERIOD_S = 1.0
@@ -89,6 +91,36 @@ class TrawlNode(ConnectedNode):
     def statuses(self) -> list[Status]:
         """Return the diagnostics of the node's own subsystems."""
         return []
+
+    def new_path(self, parameter: str, *, or_empty: bool = False, suffix: str = '') -> Path | None:
+        """Return where results go by a parameter; None where it is empty.
+
+        A node that is started again, as by ``respawn``, overwrites nothing: its path gets a number.
+
+        Parameters
+        ----------
+        parameter, or_empty, suffix
+            Name of the parameter; the rest as for `free_path`.
+
+        Raises
+        ------
+        ParameterError
+            If nothing can be written there.
+        """
+        wanted = self.parameters[parameter]
+        if not wanted:
+            return None
+        path = free_path(Path(wanted), or_empty=or_empty, suffix=suffix)
+        try:
+            require_writable(path, ParameterError)
+        except ParameterError as reason:
+            raise ParameterError(f'parameter {parameter}: {reason}') from reason
+        if path != Path(wanted):
+            self.get_logger().warning(
+                f'parameter {parameter}: {wanted} exists already and is not written over; this '
+                f'run writes {path}'
+            )
+        return path
 
     def finish_work(self) -> None:
         """Finish the node's work; called once, before the last diagnostics."""
