@@ -173,12 +173,12 @@ def estimate_listener():
     """Give the class of a node that looks at what the identification says."""
     from trawl_ros.messages.diagnostics import read_statuses
     from trawl_ros.messages.estimates import read_covariance, read_estimate, read_innovations
-    from trawl_ros.nodes.playback.recorded_qos import matching
+    from trawl_ros.nodes.graph.matching_qos import with_history
     from trawl_ros.nodes.runtime.node import TrawlNode
     from trawl_ros.nodes.runtime.qos import CONSUMER
 
     # Latched, and all that comes: two windows may be dealt with before it is its turn.
-    latched = matching((), CONSUMER)
+    latched = with_history(CONSUMER)
 
     class EstimateListener(TrawlNode):
         def __init__(self, name='listener', **kwargs):

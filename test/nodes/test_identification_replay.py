@@ -213,7 +213,9 @@ def test_a_node_that_is_killed_goes_on_after_its_last_window(replay, bag, offlin
     node = played.node()
     graph.until(lambda: len(listener.covariances) > 2)
     heard = [
-        node._listeners[topic][0] for topic in player.subscribers() if topic in node._listeners
+        node._listeners[topic].subscription
+        for topic in player.subscribers()
+        if topic in node._listeners
     ]
     graph.until(lambda: all(one.get_publisher_count() for one in heard))
     graph.settle(1.0)

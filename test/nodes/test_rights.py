@@ -84,7 +84,7 @@ def used(open_graph, gear_path, tmp_path_factory):
         shown = nodes[NODES.index(FoxgloveNode)]
         with connect(f'ws://127.0.0.1:{VIEWED}', subprotocols=['foxglove.sdk.v1']) as viewer:
             want_everything(viewer, len(shown._topics))
-            graph.until(lambda: len(shown._profiles) == len(shown._topics))
+            graph.until(lambda: len(shown._heard) == len(shown._topics))
             graph.until(lambda: '/trawl/truth/winch' in recorder.traffic.counts('received'))
             graph.rest(1.0)
             return {node.get_name(): names_of(node) for node in (*nodes, commanding)}

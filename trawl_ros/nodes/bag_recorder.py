@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
 from rclpy.qos import QoSProfile
-from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from trawl_ros.bags.storage.mcap_output import COMPRESSIONS
 from trawl_ros.bags.storage.qos import dump_profiles
@@ -14,7 +13,8 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import STORE, type_hash
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.nodes.playback.recorded_qos import asks_too_much, matching, profiles_of
+from trawl_ros.nodes.graph.matching_qos import matching, with_history
+from trawl_ros.nodes.playback.recorded_qos import profiles_of
 from trawl_ros.nodes.playback.topic_choice import ALL, TopicChoice
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
 from trawl_ros.nodes.runtime.credit import ConsumerProgress
@@ -97,13 +97,12 @@ class BagRecorder(TrawlNode):
             absolute(topic.name, namespace): topic.name for topic in TRUTH if topic.rate != 1.0
         }
         self._timed = {absolute(topic.name, namespace) for topic in (*TRUTH, *INSTRUMENTS)}
-        self._profiles: dict[str, QoSProfile] = {}
-        self._types: dict[str, str] = {}
+        self._recorded: set[str] = set()
         for name, topic in project.items():
             if name in self._choice:
                 # Of latched topics, too, all that comes is wanted, and not the last alone.
                 profile = recorder_profile(topic.type)
-                self._record(name, topic.type, matching((), profile) if topic.latched else profile)
+                self._record(name, topic.type, with_history(profile) if topic.latched else profile)
         self.every(FLUSH_S, self._look_after)
 
     def statuses(self) -> list[Status]:
@@ -139,14 +138,8 @@ class BagRecorder(TrawlNode):
         self.get_logger().info(f'{self._bag.path}: {total} messages')
 
     def _record(self, topic: str, type_name: str, profile: QoSProfile) -> None:
-        again = topic in self._types
-        if again:
-            self.stop_listening(topic)
-        taker = self._taker(topic, type_name)
-        # Parameters of a first subscription would be forced upon the second.
-        self.listen_raw(topic, type_name, taker, profile, overridable=not again)
-        self._profiles[topic] = profile
-        self._types[topic] = type_name
+        self.listen_raw(topic, type_name, self._taker(topic, type_name), profile)
+        self._recorded.add(topic)
 
     def _taker(self, topic: str, type_name: str) -> Callable[[bytes], None]:
         timed = topic in self._timed
@@ -194,12 +187,11 @@ class BagRecorder(TrawlNode):
             self._bag.flush()
             self._dirty = False
         self._look_for_others()
-        for topic in list(self._types):
-            self._match(topic, self.get_publishers_info_by_topic(topic))
+        self.match_publishers()
 
     def _look_for_others(self) -> None:
         for topic, types in self.get_topic_names_and_types():
-            if topic in self._types or topic not in self._choice:
+            if topic in self._recorded or topic not in self._choice:
                 continue
             publishers = self.get_publishers_info_by_topic(topic)
             if not publishers:
@@ -207,22 +199,12 @@ class BagRecorder(TrawlNode):
             try:
                 if len(types) != 1 or types[0] not in STORE.types:
                     raise TrawlError(f'{topic}: types {", ".join(types)}')
-                self._record(topic, types[0], matching(publishers, recorder_profile(types[0])))
+                asked = with_history(recorder_profile(types[0]))
+                self._record(topic, types[0], matching(publishers, asked))
             except TrawlError:
                 self._unknown.add(topic)
             else:
                 self._unknown.discard(topic)
-
-    def _match(self, topic: str, publishers: Sequence[TopicEndpointInfo]) -> None:
-        """Request no more QoS than is offered, where a publisher would not be heard otherwise."""
-        asked = self._profiles[topic]
-        heard = matching(publishers, recorder_profile(self._types[topic]))
-        if asks_too_much(asked, heard):
-            self.get_logger().info(
-                f'{topic}: records what its publishers offer, which is {heard.reliability.name} '
-                f'and {heard.durability.name}'.lower()
-            )
-            self._record(topic, self._types[topic], heard)
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 from copy import copy
+from dataclasses import dataclass, replace
 from typing import Any
 
 from rclpy.duration import Duration
@@ -22,6 +23,7 @@ from trawl_ros.nodes.graph.graph_checks import (
     SHARED,
     of_one_node,
 )
+from trawl_ros.nodes.graph.matching_qos import asks_more, matching
 from trawl_ros.nodes.graph.source import Source
 from trawl_ros.nodes.runtime.incoming import (
     Incoming,
@@ -39,6 +41,17 @@ from trawl_ros.records.topics import CLOCK, NAMESPACE, find_topic
 DIAGNOSTICS = '/diagnostics'
 
 RCLError = rclpy_implementation.RCLError
+
+
+@dataclass(frozen=True)
+class Listener:
+    """Subscription, type of its topic, and what makes another one by a profile and whether
+    users may override that.
+    """
+
+    subscription: Subscription
+    type_name: str
+    subscribe: Callable[[QoSProfile, bool], Subscription]
 
 
 class ConnectedNode(Node):
@@ -71,7 +84,7 @@ class ConnectedNode(Node):
         super().__init__(name, **kwargs)
         self.exit_code: int | None = None
         self._senders: dict[str, Publisher] = {}
-        self._listeners: dict[str, tuple[Subscription, str]] = {}
+        self._listeners: dict[str, Listener] = {}
 
     def full_name(self, topic: str) -> str:
         """Return a topic's full name after namespace and remapping."""
@@ -197,17 +210,33 @@ class ConnectedNode(Node):
             self.traffic.count('received', full)
             handler(data)
 
-        subscription = self.create_subscription(
-            message_class(type_name),
-            topic,
-            take,
-            copy(profile),
-            qos_overriding_options=overriding() if overridable else None,
-            raw=True,
-            single=single,
-        )
-        self._listeners[full] = (subscription, type_name)
+        def subscribe(profile: QoSProfile, overridable: bool) -> Subscription:
+            return self.create_subscription(
+                message_class(type_name),
+                topic,
+                take,
+                profile,
+                qos_overriding_options=overriding() if overridable else None,
+                raw=True,
+                single=single,
+            )
+
+        subscription = subscribe(copy(profile), overridable)
+        self._listeners[full] = Listener(subscription, type_name, subscribe)
         self.traffic.expect('received', full)
+
+    def match_publishers(self) -> None:
+        """Subscribe again, asking for less QoS, where a publisher would not be heard otherwise."""
+        for full, listener in list(self._listeners.items()):
+            asked = listener.subscription.qos_profile
+            heard = matching(self.get_publishers_info_by_topic(full), asked)
+            if asks_more(asked, heard):
+                self.destroy_subscription(listener.subscription)
+                # Parameters of the first subscription would be forced upon this one.
+                again = listener.subscribe(heard, False)
+                self._listeners[full] = replace(listener, subscription=again)
+                offer = f'{heard.reliability.name} and {heard.durability.name}'.lower()
+                self.get_logger().info(f'{full}: hears what its publishers offer, which is {offer}')
 
     def offer(self, service: str, act: Callable[[], str]) -> None:
         """Offer a Trigger service; an error of what it does is its refusal, with reason."""
@@ -234,8 +263,7 @@ class ConnectedNode(Node):
 
     def stop_listening(self, topic: str) -> None:
         """Destroy a subscription; its counts stay."""
-        subscription, _ = self._listeners.pop(self.full_name(topic))
-        self.destroy_subscription(subscription)
+        self.destroy_subscription(self._listeners.pop(self.full_name(topic)).subscription)
 
     def refuse(self, topic: str, reason: str) -> None:
         """Count a message that is not used, and log the reason when it is new."""

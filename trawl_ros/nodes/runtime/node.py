@@ -20,11 +20,7 @@ from trawl_ros.core.limits import DIAGNOSIS
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
-from trawl_ros.nodes.graph.graph_checks import (
-    Listening,
-    clock_status,
-    connection_problems,
-)
+from trawl_ros.nodes.graph.graph_checks import clock_status, connection_problems
 from trawl_ros.nodes.runtime.awaiting_service import PERIOD_S, Answer, AwaitingService
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS, ConnectedNode
 from trawl_ros.nodes.runtime.headway import Headway
@@ -212,6 +208,7 @@ class TrawlNode(ConnectedNode):
 
     def _report(self) -> None:
         """Report each second; for the first time as soon as somebody listens."""
+        self.match_publishers()
         if self._greet_until is not None:
             if time.monotonic() < self._greet_until and not self._has_listener():
                 return
@@ -242,18 +239,15 @@ class TrawlNode(ConnectedNode):
     def _traffic_status(self) -> Status:
         problems = connection_problems(
             self,
-            {
-                topic: Listening(type_name, subscription.qos_profile)
-                for topic, (subscription, type_name) in self._listeners.items()
-            },
+            {topic: listener.type_name for topic, listener in self._listeners.items()},
             {sender.topic_name: sender.qos_profile for sender in self._senders.values()},
         )
         if refused := self.traffic.total('refused'):
             last = next(reversed(self._refused.values()))
             problems.append(f'{refused} messages left out, the last because {last}')
         # Older messages of a latched topic are meant to be given up for its newest.
-        for full, (subscription, _) in self._listeners.items():
-            if subscription.qos_profile.durability != DurabilityPolicy.TRANSIENT_LOCAL:
+        for full, listener in self._listeners.items():
+            if listener.subscription.qos_profile.durability != DurabilityPolicy.TRANSIENT_LOCAL:
                 self.traffic.lost(full, self._sources[full].lost)
         if dropped := self.traffic.dropped:
             problems.append(f'{dropped} messages were lost on the way here')
