@@ -82,7 +82,7 @@ class AutotrawlNode(TrawlNode):
         """Return the status of the warps."""
         if self._autotrawl is None:
             mode = self.parameters['mode']
-            message = 'off' if mode == OFF else f'waits for {WINCH}'
+            message = 'off' if mode == OFF else self.with_namespace(f'waits for {WINCH}')
             return [Status('autotrawl', OK if mode == OFF else WARN, message, {'mode': mode})]
         state = self._autotrawl.state()
         values = {

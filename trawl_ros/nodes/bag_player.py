@@ -114,7 +114,7 @@ class BagPlayer(TrawlNode):
         }
         if missing:
             text = f'waits for {", ".join(missing)}, which should report on sync/progress'
-            return [Status('bag', WARN, text, values)]
+            return [Status('bag', WARN, self.with_namespace(text), values)]
         problems = [*self._left_out, *self._bag.problems]
         if stalled := self._consumers.stalled():
             problems.append(

@@ -145,7 +145,8 @@ class DiscrepancyNode(TrawlNode):
         if trouble:
             return [Status('discrepancy', ERROR, trouble, values)]
         if diagnosis is None:
-            return [Status('discrepancy', OK, 'waiting for a steady window', values)]
+            waits = self.with_namespace('waiting for a steady window')
+            return [Status('discrepancy', OK, waits, values)]
         level = OK if diagnosis.verdict in CALM else WARN
         values |= {'verdict': diagnosis.verdict}
         return [Status('discrepancy', level, headline(diagnosis), values)]
@@ -272,7 +273,8 @@ class DiscrepancyNode(TrawlNode):
         """Write the report; return the closing sentence, and True if all windows count."""
         diagnosis, trouble = self._outcome.diagnosis, self._outcome.trouble
         if diagnosis is None:
-            diagnosis = unread(self._gear, (), trouble or 'no steady window has been heard')
+            nothing = self.with_namespace('no steady window has been heard')
+            diagnosis = unread(self._gear, (), trouble or nothing)
         sentence = f'{diagnosis.verdict}: {headline(diagnosis)}'
         if self._folder is not None:
             # Figures bring matplotlib, which the node needs at its end only.

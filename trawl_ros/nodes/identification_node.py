@@ -194,7 +194,7 @@ class IdentificationNode(TrawlNode):
         elif trouble := outcome.troubles.get('estimating'):
             level, message = ERROR, trouble
         elif outcome.why_not is not None:
-            level, message = WARN, outcome.why_not
+            level, message = WARN, self.with_namespace(outcome.why_not)
         return Status('estimate', level, message, values)
 
     def _about_state(self, outcome: EstimatorOutcome) -> list[Status]:
@@ -281,18 +281,19 @@ class IdentificationNode(TrawlNode):
         wish = self._worker.finish()
         await wish
         response.success = not wish.outcome.failed
-        response.message = wish.outcome.finished or ''
-        self._tell(wish.outcome)
+        response.message = self._tell(wish.outcome)
         return response
 
-    def _tell(self, outcome: EstimatorOutcome) -> None:
-        if outcome.finished is None:
-            return
+    def _tell(self, outcome: EstimatorOutcome) -> str:
+        """Log the sentence with which an identification ends, and return it."""
+        finished = outcome.finished or ''
         # A logger refuses another severity from the same line.
-        if outcome.failed:
-            self.get_logger().warning(outcome.finished)
-        else:
-            self.get_logger().info(outcome.finished)
+        if finished and outcome.failed:
+            finished = self.with_namespace(finished)
+            self.get_logger().warning(finished)
+        elif finished:
+            self.get_logger().info(finished)
+        return finished
 
 
 def _ranking(advice: Advice | None) -> tuple[object, ...]:

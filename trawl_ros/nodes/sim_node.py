@@ -154,7 +154,9 @@ class SimNode(TrawlNode):
         if missing and self._started:
             return WARN, f'goes on without {", ".join(missing)}, silent for {SILENT_S:g} s'
         if missing:
-            return WARN, f'waits for {", ".join(missing)}, which should report on sync/progress'
+            names = ', '.join(missing)
+            reason = f'waits for {names}, which should report on sync/progress'
+            return WARN, self.with_namespace(reason)
         if stalled := self._consumers.stalled():
             names = ', '.join(stalled)
             return WARN, f'goes on without {names}, not getting on for {STALLED_S:g} s'

@@ -261,6 +261,11 @@ class ConnectedNode(Node):
         self.get_logger().error(f'{service}: {sentence}')
         return sentence
 
+    @property
+    def subscribed(self) -> dict[str, str]:
+        """Types of the topics listened to, by full name."""
+        return {full: listener.type_name for full, listener in self._listeners.items()}
+
     def stop_listening(self, topic: str) -> None:
         """Destroy a subscription; its counts stay."""
         self.destroy_subscription(self._listeners.pop(self.full_name(topic)).subscription)

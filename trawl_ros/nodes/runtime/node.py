@@ -20,6 +20,7 @@ from trawl_ros.core.limits import DIAGNOSIS
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
+from trawl_ros.nodes.graph.elsewhere import elsewhere
 from trawl_ros.nodes.graph.graph_checks import clock_status, connection_problems
 from trawl_ros.nodes.runtime.awaiting_service import PERIOD_S, Answer, AwaitingService
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS, ConnectedNode
@@ -117,6 +118,10 @@ class TrawlNode(ConnectedNode):
                 f'run writes {path}'
             )
         return path
+
+    def with_namespace(self, sentence: str) -> str:
+        """Return a sentence on what is missing, with the namespace where the graph has it."""
+        return '; '.join(filter(None, (sentence, elsewhere(self, self.subscribed))))
 
     def finish_work(self) -> None:
         """Finish the node's work; called once, before the last diagnostics."""
@@ -239,9 +244,11 @@ class TrawlNode(ConnectedNode):
     def _traffic_status(self) -> Status:
         problems = connection_problems(
             self,
-            {topic: listener.type_name for topic, listener in self._listeners.items()},
+            self.subscribed,
             {sender.topic_name: sender.qos_profile for sender in self._senders.values()},
         )
+        if there := elsewhere(self, self.subscribed):
+            problems.append(there)
         if refused := self.traffic.total('refused'):
             last = next(reversed(self._refused.values()))
             problems.append(f'{refused} messages left out, the last because {last}')
