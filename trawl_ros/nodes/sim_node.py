@@ -12,9 +12,11 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.commands import VESSEL_COMMAND, WINCH_COMMAND
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
+from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
 from trawl_ros.model.bar_pass import add_bar_blocks
 from trawl_ros.model.compiled import is_cached
+from trawl_ros.nodes.command_watch import CommandWatch
 from trawl_ros.nodes.runtime.credit import SILENT_S, STALLED_S, Consumers
 from trawl_ros.nodes.runtime.message_classes import installed
 from trawl_ros.nodes.runtime.node import TrawlNode
@@ -37,6 +39,7 @@ from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
 
 GEAR_MARKERS = 'truth/gear'
+WHEN_SILENT = {VESSEL_COMMAND: 'the ship steers straight on', WINCH_COMMAND: 'the winches stop'}
 BURST_S = 0.02
 """Wall time for which other callbacks may have to wait."""
 
@@ -76,6 +79,12 @@ class SimNode(TrawlNode):
         Names('wait_for', 'Consumers (node names) without which the tow does not start.'),
         Number('lead_s', 3.0, 's', 1.0, 8.0, 'Simulated time that the slowest consumer may lag '
                'behind.', live=True),
+        Number('command_timeout_s', 0.0, 's', 0.0, 3600.0, 'Simulated time without a '
+               'command/vessel after which the ship steers straight on, and without a '
+               'command/winch after which the winches stop; 0 is never.', live=True),
+        Number('max_command_age_s', 0.0, 's', 0.0, 1e6, 'Largest difference between the stamp of a '
+               'command and the time of this node; others are refused; 0 takes any stamp.',
+               live=True),
     )  # fmt: skip
 
     _clock_published = False
@@ -162,6 +171,10 @@ class SimNode(TrawlNode):
             return WARN, f'goes on without {names}, not getting on for {STALLED_S:g} s'
         if fallen := fallen_sides(self._tow.simulation):
             return WARN, f'board fallen: {fallen}; towed on, expected more speed or less warp'
+        if lapsed := [topic for topic, watch in self._watches.items() if watch.lapsed]:
+            timeout = self.parameters['command_timeout_s']
+            done = ' and '.join(WHEN_SILENT[topic] for topic in lapsed)
+            return WARN, f'{" and ".join(lapsed)} silent for {timeout:g} s: {done}'
         if self._paused:
             return OK, 'paused'
         if self._pacer.lost_s > 0.0:
@@ -192,6 +205,7 @@ class SimNode(TrawlNode):
         return tow, round(SECOND / rate)
 
     def _begin(self) -> None:
+        self._watches = {topic: CommandWatch(topic) for topic in (VESSEL_COMMAND, WINCH_COMMAND)}
         self._offset: int | None = None
         self._latest = 0
         self._next_s = 0.0
@@ -234,6 +248,7 @@ class SimNode(TrawlNode):
         return self._consumers.followed(self._latest + self._period - lead)
 
     def _go_on(self) -> None:
+        self._watch_commands()
         try:
             truth = self._tow.step()
         except TrawlError as reason:
@@ -284,16 +299,34 @@ class SimNode(TrawlNode):
 
     def _command_winches(self, message: Any) -> None:
         wanted = wanted_lengths(message)
-        self._commanded(WINCH_COMMAND).command_winches(*wanted)
+        self._commanded(WINCH_COMMAND, message).command_winches(*wanted)
+        if any(message.velocity):
+            self.say(
+                f'velocity of {WINCH_COMMAND}', WARN, 'not used: winches pay out at their own speed'
+            )
 
     def _command_vessel(self, message: Any) -> None:
         wanted = wanted_motion(message)
-        self._commanded(VESSEL_COMMAND).command_vessel(*wanted)
+        self._commanded(VESSEL_COMMAND, message).command_vessel(*wanted)
 
-    def _commanded(self, topic: str) -> CommandedTow:
-        if isinstance(self._tow, CommandedTow):
-            return self._tow
-        raise MessageError(f'{topic}: the scenario is in command; expected no command beside it')
+    def _commanded(self, topic: str, message: Any) -> CommandedTow:
+        tow = self._tow
+        if not isinstance(tow, CommandedTow):
+            raise MessageError(
+                f'{topic}: the scenario is in command; expected no command beside it'
+            )
+        most = self.parameters['max_command_age_s']
+        self._watches[topic].take(stamp_of(message), self.now(), tow.time_s, most)
+        return tow
+
+    def _watch_commands(self) -> None:
+        tow, timeout = self._tow, self.parameters['command_timeout_s']
+        if not isinstance(tow, CommandedTow):
+            return
+        if self._watches[VESSEL_COMMAND].lapses(tow.time_s, timeout):
+            tow.stop_turning()
+        if self._watches[WINCH_COMMAND].lapses(tow.time_s, timeout):
+            tow.stop_winches()
 
     def _reset(self) -> str:
         self._tow.reset()

@@ -199,6 +199,22 @@ class Simulation:
             return self._advanced(half, span - span // 2, halvings - 1)
         return Instant(now.stamp + span, ship, winches, motion)
 
+    def stop_lengths(self) -> tuple[float, float]:
+        """Return the warp lengths (m, by the counters) where winches stop soonest, port first."""
+        most = self.model.gear.winch.max_acceleration_m_s2
+        port, starboard = (
+            winch.length + winch.speed * abs(winch.speed) / (2.0 * most)
+            for winch in self.now.winches
+        )
+        # To first order in the error of the counters.
+        towed = self._towed(replace(self.command, port_length=port, starboard_length=starboard))
+        stops = (2.0 * port - towed.port_length, 2.0 * starboard - towed.starboard_length)
+        commanded = (self.command.port_length, self.command.starboard_length)
+        return tuple(  # type: ignore[return-value]
+            stop if winch.speed else length
+            for stop, winch, length in zip(stops, self.now.winches, commanded, strict=True)
+        )
+
     def _towed(self, command: Command) -> Command:
         """True command where counters and log show the given one."""
         if not self._effect_set:

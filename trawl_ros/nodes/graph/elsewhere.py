@@ -47,8 +47,9 @@ def elsewhere(node: Node, subscribed: Mapping[str, str]) -> str:
             if place != own and silent[name] in kinds and not hidden and _published(node, full):
                 found.setdefault(place or '/', set()).add(name)
     return '; '.join(
-        f'nobody publishes {_some(names)} in {own or "/"}, but the graph does in namespace {place}; '
-        f'expected one namespace: start one side with --ros-args -r __ns:={place}, or the other '
+        f'nobody publishes {_some(names)} in {own or "/"}, but the graph does in namespace '
+        f'{place}; expected one namespace: start one side with '
+        f'--ros-args -r __ns:={place}, or the other '
         f'with __ns:={own or "/"}'
         for place, names in sorted(found.items())
     )
