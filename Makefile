@@ -66,10 +66,10 @@ quick: $(VENV)/ready
 test: lint tests
 
 tests: $(VENV)/ready
-	@$(PYTEST) -m 'not slow'
+	@$(PYTEST) -m 'not slow' test
 
 test-slow: $(VENV)/ready
-	@$(PYTEST) -m 'slow and not report'
+	@$(PYTEST) -m 'slow and not report' test
 
 test-view: $(VENV)/ready
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
@@ -87,7 +87,7 @@ fuzz: $(VENV)/ready
 	@PYTHONPATH=test/fuzz $(BIN)/python -m hostile --minutes $(MINUTES) --out docs/studies/fuzz.json
 
 coverage: $(VENV)/ready
-	@$(PYTEST) -m 'not slow' --cov --cov-report=term:skip-covered
+	@$(PYTEST) -m 'not slow' --cov --cov-report=term:skip-covered test
 
 docs: $(VENV)/ready
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --site-dir $(SITE)

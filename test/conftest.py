@@ -44,6 +44,12 @@ LEGS = ((200.0, 2.3), (220.0, 2.3))
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Leave slow tests out where nothing is asked for, as by `colcon test`."""
+    if config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.markexpr:
+        config.option.markexpr = 'not slow'
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Files with slow tests come first: one that begins last would leave a worker idle."""
     slow = {item.path for item in items if item.get_closest_marker('slow')}
