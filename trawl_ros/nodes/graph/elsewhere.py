@@ -28,8 +28,10 @@ def elsewhere(node: Node, subscribed: Mapping[str, str]) -> str:
     Returns
     -------
     str
-        A sentence; empty where there is nothing to say.
+        A sentence; empty where there is nothing to say, or ROS is shut down.
     """
+    if not node.context.ok():
+        return ''
     own = node.get_namespace().rstrip('/')
     wanted = {
         name.removeprefix(f'{own}/'): kind
