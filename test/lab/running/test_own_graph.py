@@ -1,9 +1,12 @@
 """Two graphs at once are in domains of their own, whoever made them."""
 
+import os
+import re
 import socket
 import subprocess
 import sys
 from contextlib import ExitStack
+from pathlib import Path
 
 import pytest
 
@@ -11,6 +14,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.lab.running import own_graph as module
 from trawl_ros.lab.running.own_graph import DOMAINS, own_graph
 
+ROOT = Path(__file__).resolve().parents[3]
 OTHER = """\
 import sys
 from pathlib import Path
@@ -64,3 +68,22 @@ def test_a_domain_in_which_another_program_has_a_node_is_left_to_it(tmp_path, do
         for _ in range(5):
             with own_graph(tmp_path) as graph:
                 assert domain(graph) == 43
+
+
+def test_this_run_of_tests_holds_the_domain_of_its_environment(tmp_path, domains):
+    own = int(os.environ['ROS_DOMAIN_ID'])
+    assert own in DOMAINS
+    domains(own)
+    with pytest.raises(TrawlError, match='all in use'), own_graph(tmp_path):
+        pass
+
+
+def test_no_test_and_no_command_names_a_domain():
+    fixed = re.compile(r"DOMAIN_ID(=|': ')\d|domain_id=\d|^DOMAINS? = \(?\d", re.M)
+    named = {
+        file.relative_to(ROOT).as_posix()
+        for folder in ('test', 'trawl_ros')
+        for file in (ROOT / folder).rglob('*.py')
+        if fixed.search(file.read_text(encoding='utf-8'))
+    }
+    assert named <= {'trawl_ros/lab/studies/hostile/study.py'}
