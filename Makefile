@@ -87,7 +87,7 @@ fuzz: $(VENV)/ready
 	@PYTHONPATH=test/fuzz $(BIN)/python -m hostile --minutes $(MINUTES) --out docs/studies/fuzz.json
 
 coverage: $(VENV)/ready
-	@$(PYTEST) -m 'not slow' --cov --cov-report=term:skip-covered test
+	@$(PYTEST) -m 'not slow' --cov --cov-fail-under=93 --cov-report=term:skip-covered test
 
 docs: $(VENV)/ready
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --site-dir $(SITE)
