@@ -11,13 +11,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
 
+import numpy as np
 from rosbags.interfaces import Qos, QosDurability, QosReliability
 
 from trawl_ros.bags.check_records import BagCheck, Finding, TopicCheck
 from trawl_ros.bags.header_stamps import StampReader, stamp_reader
-from trawl_ros.bags.one_source import SourceWatch
+from trawl_ros.bags.one_source import Doubt, SourceWatch
 from trawl_ros.bags.reader import Bag, RawMessage
 from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.core.stamps import judge_stamps
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
 from trawl_ros.records.topics import (
@@ -92,12 +94,13 @@ def check_bag(
         records[message.topic].take(message)
         if message.topic in sources:
             sources[message.topic].take(bag, message)
+    span, findings = _judge_times(records.values())
     offered = bag.offered()
     topics = [
         _topic_check(topic, bag.topics[topic], record, _words(offered[topic]), namespace)
         for topic, record in sorted(records.items())
     ]
-    findings = _whole(bag, topics)
+    findings += _whole(bag, topics)
     for checked in topics:
         known = find_topic(checked.topic, namespace)
         if known is not None:
@@ -105,20 +108,19 @@ def check_bag(
                 checked, known, offered[checked.topic], records[checked.topic]
             )
     findings += [
-        Finding('source', topic, f'has two sources, for {source.why}; expected one')
+        Finding(source.doubt.kind, topic, source.doubt.text)
         for topic, source in sources.items()
-        if source.why
+        if source.doubt
     ]
     there = {checked.topic for checked in topics if checked.count}
     for name in sorted(wanted - there):
         findings.append(Finding('missing', name, 'is required, and has no message'))
-    times = [time for record in records.values() for time in record.span()]
     return BagCheck(
         path=bag.path,
         facts=bag.facts,
         count=sum(checked.count for checked in topics),
-        start=min(times, default=None),
-        end=max(times, default=None),
+        start=span and span[0],
+        end=span and span[1],
         damaged_chunks=bag.damaged_chunks,
         topics=tuple(topics),
         missing=_missing(there, namespace),
@@ -132,6 +134,8 @@ class _Record:
 
     stamp_in: StampReader | None
     times: 'array[int]' = field(default_factory=lambda: array('q'))
+    stamps: 'array[int]' = field(default_factory=lambda: array('q'))
+    count: int = 0
     bytes: int = 0
     backward: int = 0
     duplicates: int = 0
@@ -140,6 +144,7 @@ class _Record:
     types: set[str] = field(default_factory=set)
 
     def take(self, message: RawMessage) -> None:
+        self.count += 1
         self.times.append(message.log_time)
         self.bytes += len(message.data)
         self.types.add(message.type)
@@ -150,12 +155,10 @@ class _Record:
             self.backward += stamp < self.last_stamp
             self.duplicates += stamp == self.last_stamp
         self.last_stamp = stamp
+        self.stamps.append(stamp)
         lag = message.log_time - stamp
         least, greatest = self.lag or (lag, lag)
         self.lag = min(least, lag), max(greatest, lag)
-
-    def span(self) -> tuple[int, ...]:
-        return (self.times[0], self.times[-1]) if self.times else ()
 
     def median_interval(self) -> float:
         return median(self.intervals() or [0])
@@ -166,18 +169,33 @@ class _Record:
 
 @dataclass
 class _Source:
-    """Check that a topic has one source; ``why`` names the evidence of several."""
+    """Check that a topic has one source, and a clock; ``doubt`` says what speaks against it."""
 
     name: str
-    why: str = ''
+    doubt: Doubt | None = None
     watch: SourceWatch = field(default_factory=SourceWatch)
 
     def take(self, bag: Bag, message: RawMessage) -> None:
         # Once it is known nothing more is decoded.
         with suppress(BagError, MessageError):
-            if not self.why:
+            if self.doubt is None:
                 sample = to_sample(self.name, bag.decode(message))
-                self.why = self.watch.take(message.channel, sample)
+                self.doubt = self.watch.take(message.channel, sample, message.sequence)
+
+
+def _judge_times(records: Collection[_Record]) -> tuple[tuple[int, int] | None, list[Finding]]:
+    """Judge header stamps and log times of all topics; log times that cannot be are dropped."""
+    of_headers, judged = (
+        judge_stamps(np.concatenate([np.zeros(0, dtype=np.int64), *numbers]))
+        for numbers in ([r.stamps for r in records], [r.times for r in records])
+    )
+    findings = [Finding('stamp', '', f'of headers, {text}') for text in of_headers.sentences()]
+    findings += [Finding('stamp', '', f'of the log, {text}') for text in judged.sentences()]
+    span = judged.span
+    if judged.reasons and span:
+        for record in records:
+            record.times = array('q', (time for time in record.times if span[0] <= time <= span[1]))
+    return span, findings
 
 
 def _required(names: Collection[str], namespace: str) -> set[str]:
@@ -207,7 +225,7 @@ def _topic_check(
         topic=topic,
         type=' and '.join(sorted(record.types | {type_name})),
         group=groups[0] if groups else '',
-        count=len(record.times),
+        count=record.count,
         bytes=record.bytes,
         rate=len(intervals) * SECOND / span if span else None,
         usual_rate=known.rate if known else None,

@@ -39,6 +39,10 @@ class StorageFile(Protocol):
         """Number of damaged chunks so far."""
 
     @property
+    def counts_arrivals(self) -> bool:
+        """True if the numbers of its messages, by topic, are the order in which they came."""
+
+    @property
     def definitions(self) -> dict[str, Definition]:
         """Definition of each topic's messages."""
 

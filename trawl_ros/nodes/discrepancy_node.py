@@ -196,7 +196,9 @@ class DiscrepancyNode(TrawlNode):
 
     def _send_findings(self) -> None:
         told = [onset_status(one, one.number in self._acknowledged) for one in self._newest_told()]
-        self.send(FINDINGS, diagnostic_array(self._reached.stamp, [*self._verdict, *told]))
+        self.send(
+            FINDINGS, diagnostic_array(self._reached.stamp or self.now(), [*self._verdict, *told])
+        )
 
     def _newest_told(self) -> list[Finding]:
         """Newest findings of what has begun."""
