@@ -46,6 +46,9 @@ UNSTAMPED = '0, as of a driver that never stamps'
 FUTURE = 'in the future, by the clock of this machine'
 ELSEWHERE = 'far from the rest'
 EXCURSION = 'of another hour or day than those before and behind'
+MOST_LEAPS = 10
+"""Leaps from which on stamps are in no order, unless they are many."""
+
 FEWEST_UNSTAMPED = 3
 """Stamps of 0 that no simulation gives, where it gives no others."""
 
@@ -92,17 +95,22 @@ class StampJudgement:
     """Judgement of the stamps of one recording.
 
     ``false`` (n,) marks those that cannot be, ``reasons`` counts them. ``span`` is the first and
-    last (ns) of the others, None without any.
+    last (ns) of the others, None without any. ``set_back`` are steps back among those, each with
+    the stamps (ns) before and behind it.
     """
 
     false: BoolArray
     reasons: Mapping[str, int]
     span: tuple[int, int] | None
+    set_back: tuple[tuple[int, int], ...] = ()
 
     def sentences(self) -> list[str]:
         """Say what was found, one sentence for each reason."""
         usual = f'; the others are of {when(self.span[0])}' if self.span else ''
-        return [f'{count} stamps are {why}{usual}' for why, count in self.reasons.items()]
+        found = [f'{count} stamps are {why}{usual}' for why, count in self.reasons.items()]
+        for before, behind in self.set_back:
+            found.append(f'the clock was set back by {lasting(before - behind)} at {when(before)}')
+        return found
 
 
 def judge_stamps(
@@ -131,7 +139,7 @@ def judge_stamps(
         reasons[EXCURSION] += int(np.count_nonzero(excursions))
     true = stamps[~false]
     span = (int(true.min()), int(true.max())) if len(true) else None
-    return StampJudgement(false, reasons, span)
+    return StampJudgement(false, reasons, span, _set_back(true) if in_order else ())
 
 
 def _by_era(stamps: StampArray, apart_ns: int) -> list[tuple[StampArray, str, bool]]:
@@ -167,7 +175,7 @@ def _excursions(stamps: StampArray) -> BoolArray:
     """
     away = np.zeros(len(stamps), dtype=bool)
     leaps = np.flatnonzero(abs(np.diff(stamps)) > FAR_NS) + 1
-    if not 2 <= len(leaps) <= max(10, len(stamps) // 50):
+    if not 2 <= len(leaps) <= max(MOST_LEAPS, len(stamps) // 50):
         return away
     bounds = [0, *leaps.tolist(), len(stamps)]
     runs = list(pairwise(bounds))
@@ -183,6 +191,14 @@ def _excursions(stamps: StampArray) -> BoolArray:
                 continue
         before = here
     return away
+
+
+def _set_back(stamps: StampArray) -> tuple[tuple[int, int], ...]:
+    """Give the steps back by more than `FAR_NS`; none where stamps are in no order."""
+    places = np.flatnonzero(np.diff(stamps) < -FAR_NS)
+    if len(places) > max(MOST_LEAPS, len(stamps) // 50):
+        return ()
+    return tuple((int(stamps[place]), int(stamps[place + 1])) for place in places)
 
 
 class Leaps:

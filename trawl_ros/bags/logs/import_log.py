@@ -75,7 +75,7 @@ def import_log(
     path = Path(csv_path)
     reading = _Reading(path, load_mapping(mapping_path), leave_out)
     done = write_samples(path, reading.samples(), bag_path, lambda: (reading.rows, reading.left))
-    return replace(done, notes=tuple(reading.notes))
+    return replace(done, notes=(*reading.notes, *done.notes))
 
 
 class _Reading:
