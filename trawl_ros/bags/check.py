@@ -6,7 +6,6 @@ is. A bag without findings is sound.
 
 from array import array
 from collections.abc import Collection
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
@@ -16,12 +15,11 @@ from rosbags.interfaces import Qos, QosDurability, QosReliability
 
 from trawl_ros.bags.check_records import BagCheck, Finding, TopicCheck
 from trawl_ros.bags.header_stamps import StampReader, stamp_reader
-from trawl_ros.bags.one_source import Doubt, SourceWatch
 from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.bags.topic_content import TopicContent
+from trawl_ros.core.errors import BagError
 from trawl_ros.core.stamps import judge_stamps
 from trawl_ros.core.time import SECOND
-from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
 from trawl_ros.records.topics import (
     COMMANDS,
     ESTIMATES,
@@ -89,11 +87,16 @@ def check_bag(
     wanted = _required(required, namespace)
     bag = Bag(path, namespace=namespace, lenient=True)
     records = {topic: _Record(stamp_reader(bag, topic)) for topic in bag.topics}
-    sources = {absolute(name, namespace): _Source(name) for name in SAMPLE_TOPICS}
+    contents = {
+        topic: TopicContent(known.name)
+        for topic, type_name in bag.topics.items()
+        if (known := find_topic(topic, namespace)) and known.type == type_name
+    }
     for message in bag.as_stored():
         records[message.topic].take(message)
-        if message.topic in sources:
-            sources[message.topic].take(bag, message)
+        if message.topic in contents:
+            contents[message.topic].take(bag, message)
+    log_span = _log_span(records.values())
     span, findings = _judge_times(records.values())
     offered = bag.offered()
     topics = [
@@ -107,11 +110,12 @@ def check_bag(
             findings += _against_contract(
                 checked, known, offered[checked.topic], records[checked.topic]
             )
-    findings += [
-        Finding(source.doubt.kind, topic, source.doubt.text)
-        for topic, source in sources.items()
-        if source.doubt
-    ]
+    for topic, content in contents.items():
+        findings += content.findings(topic)
+    if not bag.problems:
+        counts = {topic.topic: topic.count for topic in topics if topic.count}
+        faults = bag.metadata_faults(counts, log_span)
+        findings += [Finding('content', '', fault) for fault in faults]
     there = {checked.topic for checked in topics if checked.count}
     for name in sorted(wanted - there):
         findings.append(Finding('missing', name, 'is required, and has no message'))
@@ -167,22 +171,6 @@ class _Record:
         return [after - before for before, after in zip(self.times, self.times[1:])]
 
 
-@dataclass
-class _Source:
-    """Check that a topic has one source, and a clock; ``doubt`` says what speaks against it."""
-
-    name: str
-    doubt: Doubt | None = None
-    watch: SourceWatch = field(default_factory=SourceWatch)
-
-    def take(self, bag: Bag, message: RawMessage) -> None:
-        # Once it is known nothing more is decoded.
-        with suppress(BagError, MessageError):
-            if self.doubt is None:
-                sample = to_sample(self.name, bag.decode(message))
-                self.doubt = self.watch.take(message.channel, sample, message.sequence)
-
-
 def _judge_times(records: Collection[_Record]) -> tuple[tuple[int, int] | None, list[Finding]]:
     """Judge header stamps and log times of all topics; log times that cannot be are dropped."""
     of_headers, judged = (
@@ -196,6 +184,17 @@ def _judge_times(records: Collection[_Record]) -> tuple[tuple[int, int] | None, 
         for record in records:
             record.times = array('q', (time for time in record.times if span[0] <= time <= span[1]))
     return span, findings
+
+
+def _log_span(records: Collection[_Record]) -> tuple[int, int] | None:
+    """First and last log time (ns) of all; None without messages."""
+    ends = [
+        time
+        for record in records
+        if record.times
+        for time in record.times[:: len(record.times) - 1 or 1]
+    ]
+    return (min(ends), max(ends)) if ends else None
 
 
 def _required(names: Collection[str], namespace: str) -> set[str]:

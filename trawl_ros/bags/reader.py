@@ -94,7 +94,9 @@ class Bag:
         self._lenient = lenient
         with reading(self.path, BagError):
             self._source = open_source(self.path, self._report, lenient=lenient)
-        self.topics = {topic: definition.type for topic, definition in self.definitions().items()}
+        # Gathered once: there may be thousands.
+        self._definitions = self._source.definitions
+        self.topics = {topic: definition.type for topic, definition in self._definitions.items()}
         self.custom_data = self._source.custom_data
         self._counted = all(file.counts_arrivals for file in self._source.files)
         self._types = BagTypes()
@@ -115,9 +117,13 @@ class Bag:
         """Files without index, which are scanned for messages."""
         return [file.path for file in self._source.files if not file.indexed]
 
+    def metadata_faults(self, counts: Mapping[str, int], span: tuple[int, int] | None) -> list[str]:
+        """Hold ``metadata.yaml`` against all that was read; see `metadata_faults`."""
+        return self._source.metadata_faults(counts, span)
+
     def definitions(self) -> dict[str, Definition]:
         """Return the definitions by full topic name."""
-        return self._source.definitions
+        return self._definitions
 
     def offered(self) -> dict[str, tuple[Qos, ...]]:
         """Return by full topic name the QoS that its publishers offered; empty where unknown.
@@ -232,7 +238,7 @@ class Bag:
         """
         if raw.topic not in self._decoders_made:
             self._decoders_made[raw.topic] = self._types.decoder(
-                raw.topic, self._source.definitions[raw.topic]
+                raw.topic, self._definitions[raw.topic]
             )
         return self._decoders_made[raw.topic](raw.data)
 
@@ -244,7 +250,7 @@ class Bag:
         BagError
             If the bag's definition of the type is not understood.
         """
-        return self._types.store(topic, self._source.definitions[topic])
+        return self._types.store(topic, self._definitions[topic])
 
     def summary(self) -> BagSummary:
         """Count all messages by reading through the whole bag."""

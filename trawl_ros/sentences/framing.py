@@ -19,6 +19,7 @@ LONGEST_LINE = 1024
 LONGEST_FRONT = 256
 """Characters in front of a sentence that are looked at: a recorder's time, a tag block."""
 
+NO_TEXT = 'a line that is no text'
 CUT_SHORT = 'a sentence that was cut short by the next one'
 
 _START = re.compile(r'[$!@](?=[A-Z][A-Z0-9]{2,9},)')
@@ -90,12 +91,12 @@ def parse_line(line: bytes) -> Frame:
     at = begins[-1] if begins else max(text.rfind(start) for start in STARTS)
     if at < 0:
         if not raw.startswith(HASH):
-            raise Unreadable('a line without a sentence ($…)')
+            raise Unreadable('a line without a sentence ($…)' if raw.isascii() else NO_TEXT)
         at = 0
     front, start, rest = text[:at], text[at], text[at + 1 :]
     found = _CHECKSUM.search(rest)
     if not rest[: found.end() if found else None].isascii():
-        raise Unreadable('a line that is no text')
+        raise Unreadable(NO_TEXT)
     if found is None:
         if rest.endswith(tuple(STARTS)):
             raise Unreadable(CUT_SHORT)

@@ -109,7 +109,7 @@ def test_a_damaged_sentence_gives_nothing_and_is_counted(run):
     assert 'vessel/echo_sounder/depth' not in found
     assert said.left_out['a sentence whose checksum is wrong'] == 1
     assert said.left_out['a sentence without checksum'] == 1
-    assert said.left_out['a line without a sentence ($…)'] == 1
+    assert said.left_out['a line that is no text'] == 1
 
 
 def test_a_sentence_cut_short_by_the_next_costs_only_itself(run):
@@ -202,7 +202,9 @@ def test_what_comes_before_the_first_date_is_left_out(run):
 
 
 def test_a_log_in_which_nothing_says_the_date_is_refused_unless_the_mapping_does(run):
-    words = r'no valid RMC or ZDA among 2 lines says the date \(1: GGA with a time of day and no date'
+    words = (
+        r'no valid RMC or ZDA among 2 lines says the date \(1: GGA with a time of day and no date'
+    )
     with pytest.raises(LogError, match=words):
         run([LOG[1], LOG[3]])
     mapping = changed('  time: sentences', '  date: 2026-08-01\n  time: sentences')

@@ -200,7 +200,7 @@ class _Reading:
             number = parse(text, self._decimal)
         except ValueError as expected:
             raise row.bad(source.column, f'{expected} ({source.unit})') from None
-        if number in self._missing_numbers:
+        if number in self._missing_numbers or number in source.missing:
             return math.nan
         if source.hemisphere:
             try:

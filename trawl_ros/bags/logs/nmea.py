@@ -36,6 +36,7 @@ from trawl_ros.sentences.framing import (
 BLOCK_BYTES = 1 << 16
 """Bytes of a log that are read at once."""
 
+_NO_LETTER = re.compile(r'[^A-Z0-9]')
 _TABLE = re.compile(r'[,;|\t]')
 _AROUND = ' \t\r\n,;|[]()<>"'
 
@@ -110,6 +111,10 @@ class _Listening:
         for frame in self._frames():
             if self._gear.knows(frame):
                 self._hear_gear(frame)
+                continue
+            if frame.start != '$':
+                address = _NO_LETTER.sub('', frame.body.partition(',')[0])[:10]
+                self.left[f'sentence {frame.start}{address}, which no topic takes'] += 1
                 continue
             sentence = self._parse(frame)
             if sentence is None:
