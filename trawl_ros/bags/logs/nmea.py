@@ -132,6 +132,7 @@ class _Listening:
                 self.left['before the first time with a date'] += 1
                 continue
             self._take(heard, sentence, stamp)
+        self.left.update(self._times.impossible)
         start = self._mapping.start
         timeless = start is None and not self._gear.has_times
         if self._recorder is None and self.lines and not self._times.moments and timeless:
@@ -151,7 +152,7 @@ class _Listening:
 
     def _undated(self) -> str:
         """Say that there is no date, what was seen instead, and what would help."""
-        seen = listed(self._times.unused | self.left)
+        seen = listed(self._times.unused + self.left)
         # A time of day and a date make a time; without either there is nothing to date.
         if self._times.undated:
             help_ = 'one, or key date in the mapping, which these times of day then have'

@@ -36,6 +36,8 @@ class SentenceTimes:
         """Stamps (ns) in the order in which they were said, each once."""
         self.unused: Counter[str] = Counter()
         """Sentences whose time says nothing, by reason."""
+        self.impossible: Counter[str] = Counter()
+        """Sentences whose time cannot be, by reason."""
         self.undated = 0
         """Sentences that say a time of day before any date."""
 
@@ -46,7 +48,7 @@ class SentenceTimes:
             return None
         stamp = (stated - _EPOCH) // timedelta(microseconds=1) * 1000
         if not 0 <= stamp < LATEST:
-            self.unused[f'{sentence.msgID} of the year {stated.year}'] += 1
+            self.impossible[f'{sentence.msgID} of a year that cannot be'] += 1
             return None
         self._now = stated
         if not self.moments or self.moments[-1] != stamp:
