@@ -21,7 +21,7 @@ from trawl_ros.bags.storage.packed_messages import PackedMessages
 from trawl_ros.bags.storage.stored import Definition, Stored
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError, MessageError
-from trawl_ros.core.files import new_folder
+from trawl_ros.core.files import new_folder, written_folder
 from trawl_ros.core.foreign import reading
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 
@@ -99,13 +99,13 @@ def repair_bag(
     if damaged.is_sound():
         return Repair(path, None, damaged.read, {}, False, ())
     new_folder(target, BagError)
-    with ExitStack() as stack:
+    with written_folder(target, BagError) as draft, ExitStack() as stack:
         bag: BagWriter | None = None
         for number, file in enumerate(damaged.files):
             begun = False
             for definition, stored in damaged.messages(file, on_progress):
                 if bag is None:
-                    bag = stack.enter_context(BagWriter(target, custom_data=damaged.custom_data))
+                    bag = stack.enter_context(BagWriter(draft, custom_data=damaged.custom_data))
                 elif number and not begun:
                     bag.split()
                 begun = True

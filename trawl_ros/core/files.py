@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from tempfile import TemporaryFile
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import TYPE_CHECKING, TextIO
 
 from trawl_ros.core.errors import TrawlError
@@ -109,6 +109,30 @@ def written(path: Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             draft.unlink(missing_ok=True)
+
+
+@contextmanager
+def written_folder(path: Path, error: type[TrawlError]) -> Iterator[Path]:
+    """Write a folder whole or not at all, whenever one is interrupted or the disk is full.
+
+    Yields
+    ------
+    Path
+        A path of the same name elsewhere on the disk, where the folder is to be made; it then
+        takes the other's place.
+
+    Raises
+    ------
+    TrawlError
+        Of the type ``error``, if it cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(dir=path.parent, prefix='.unfinished_') as draft:
+            yield Path(draft) / path.name
+            (Path(draft) / path.name).replace(path)
+    except OSError as reason:
+        raise error(f'{path}: cannot be written ({reason.strerror})') from reason
 
 
 def write_text(path: Path, text: str) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError, LogError
-from trawl_ros.core.files import new_folder
+from trawl_ros.core.files import new_folder, written_folder
 from trawl_ros.core.limits import LOG_READINGS
 from trawl_ros.core.stamps import LOG_APART_NS, judge_stamps
 from trawl_ros.messages.cdr import serialize
@@ -74,7 +74,10 @@ def write_samples(
         why = f' ({listed(left_out)})' if left_out else ''
         raise LogError(f'{path}: {rows} rows without any reading{why}; expected at least one')
     counts: Counter[str] = Counter()
-    with BagWriter(bag_path, custom_data={'log': path.name}) as bag:
+    with (
+        written_folder(Path(bag_path), BagError) as draft,
+        BagWriter(draft, custom_data={'log': path.name}) as bag,
+    ):
         for sample in ordered:
             topic, message = sample_message(sample)
             bag.write(absolute(topic), message.__msgtype__, serialize(message), sample.stamp)
