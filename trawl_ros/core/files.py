@@ -128,9 +128,13 @@ def written_folder(path: Path, error: type[TrawlError]) -> Iterator[Path]:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with TemporaryDirectory(dir=path.parent, prefix='.unfinished_') as draft:
-            yield Path(draft) / path.name
-            (Path(draft) / path.name).replace(path)
+        with TemporaryDirectory(dir=path.parent, prefix='.unfinished_') as folder:
+            draft = Path(folder) / path.name
+            try:
+                yield draft
+            except error as reason:
+                raise error(str(reason).replace(str(draft), str(path))) from reason
+            draft.replace(path)
     except OSError as reason:
         raise error(f'{path}: cannot be written ({reason.strerror})') from reason
 
