@@ -77,10 +77,11 @@ def test_names_that_are_too_long_leave_nothing(sound_bag, tmp_path):
 
 
 def test_an_error_names_the_folder_that_was_wanted(tmp_path):
-    with (
-        pytest.raises(BagError, match=f'^{tmp_path / "bag"}: full$'),
-        written_folder(tmp_path / 'bag', BagError) as draft,
-    ):
-        draft.mkdir()
-        raise BagError(f'{draft}: full')
+    def write():
+        with written_folder(tmp_path / 'bag', BagError) as draft:
+            draft.mkdir()
+            raise BagError(f'{draft}: full')
+
+    with pytest.raises(BagError, match=f'^{tmp_path / "bag"}: full$'):
+        write()
     assert state(tmp_path) == []

@@ -1,4 +1,4 @@
-"""What a bag holds is judged, and not only the container: decoding, values, compression, metadata."""
+"""The content of a bag is judged, and not only its container: decoding, values, metadata."""
 
 import shutil
 from dataclasses import replace
@@ -104,7 +104,9 @@ def test_messages_compressed_one_by_one_are_read_without_metadata_and_repaired(t
 )
 def test_values_that_stand_for_missing_are_no_readings(tmp_path, sample):
     samples = [replace(sample, stamp=START + number * SECOND) for number in range(3)]
-    found = [f for f in check_bag(write(tmp_path / 'a.mcap', samples)).findings if f.kind == 'value']
+    found = [
+        f for f in check_bag(write(tmp_path / 'a.mcap', samples)).findings if f.kind == 'value'
+    ]
     assert [f.text.partition(' ')[0] for f in found] == ['3']
 
 

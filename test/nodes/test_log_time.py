@@ -64,7 +64,8 @@ def test_a_simulation_from_zero_keeps_its_first_instant():
 def test_a_bag_that_is_played_by_the_clock_of_the_wall_keeps_its_stamps_and_scale():
     year = 365 * 86_400 * SECOND
     stamps = [NOW - year + number * SECOND for number in range(3)]
-    assert logged([*stamps, 0, None]) == ([*stamps, stamps[-1] + SECOND, stamps[-1] + 2 * SECOND], 1)
+    following = [stamps[-1] + SECOND, stamps[-1] + 2 * SECOND]
+    assert logged([*stamps, 0, None]) == ([*stamps, *following], 1)
 
 
 def test_a_bag_that_begins_again_keeps_its_stamps():

@@ -12,12 +12,14 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from itertools import pairwise
 from time import time_ns
-from typing import Any
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, StampArray
 from trawl_ros.core.time import SECOND
+
+MessageT = TypeVar('MessageT')
 
 DAY = 86_400 * SECOND
 
@@ -201,7 +203,7 @@ def _set_back(stamps: StampArray) -> tuple[tuple[int, int], ...]:
     return tuple((int(stamps[place]), int(stamps[place + 1])) for place in places)
 
 
-class Leaps:
+class Leaps(Generic[MessageT]):
     """Filter of leaping stamps: holds back messages until enough agree.
 
     Parameters
@@ -213,9 +215,9 @@ class Leaps:
     def __init__(self, far_ns: int = FAR_NS) -> None:
         self._far = far_ns
         self._newest: int | None = None
-        self._held: list[tuple[int, Any]] = []
+        self._held: list[tuple[int, MessageT]] = []
 
-    def take(self, stamp: int, message: Any) -> tuple[list[Any], list[Any]]:
+    def take(self, stamp: int, message: MessageT) -> tuple[list[MessageT], list[MessageT]]:
         """Filter the next message.
 
         Returns
@@ -238,7 +240,7 @@ class Leaps:
         messages, self._held = [message for _, message in self._held], []
         return messages, false
 
-    def give_up(self) -> list[Any]:
+    def give_up(self) -> list[MessageT]:
         """Give the messages that are held back, which nothing has confirmed."""
         held, self._held = self._held, []
         return [message for _, message in held]

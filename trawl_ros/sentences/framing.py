@@ -228,7 +228,7 @@ class SentenceSplitter:
             return
         pieces = split_sentences(line) if line.strip() else []
         if self._skipping and pieces:
-            # What was too long goes on up to the next start.
+            # The piece that is too long ends at the next start.
             at = _START.search(pieces[0].decode('latin-1'))
             pieces[0] = pieces[0][at.start() :] if at else b''
         for number, piece in enumerate(pieces):

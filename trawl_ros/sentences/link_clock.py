@@ -18,7 +18,7 @@ class LinkClock:
     """
 
     def __init__(self) -> None:
-        self._leaps = Leaps(LEAP_NS)
+        self._leaps: Leaps[None] = Leaps(LEAP_NS)
         self._said: int | None = None
         self._heard_at = 0
         self._interval = SECOND

@@ -22,7 +22,7 @@ def metadata_faults(
     path
         The bag's folder.
     metadata
-        What its ``metadata.yaml`` says.
+        Content of its ``metadata.yaml``.
     storages
         Kinds of its files, ``mcap`` or ``sqlite3``.
     counts

@@ -28,7 +28,7 @@ class LogTimes:
 
     def __init__(self) -> None:
         self.replaced = 0
-        self._offsets = Leaps(FAR_NS)
+        self._offsets: Leaps[tuple[int, int | None, Any]] = Leaps(FAR_NS)
         self._offset: int | None = None
         self._waiting: list[tuple[int, int | None, Any]] = []
         self._since: int | None = None
@@ -69,7 +69,7 @@ class LogTimes:
 
     def _release(self) -> Iterator[tuple[int, Any]]:
         offset = self._offset or 0
-        # What data are on their way for is no other scale.
+        # Latency is no other scale.
         offset = offset if abs(offset) > FAR_NS else 0
         for received, stamp, message in self._waiting:
             log_time = max(received + offset, 0)

@@ -115,7 +115,7 @@ def settling(
     far_ns: int = FAR_NS,
 ) -> Callable[[Any], None]:
     """Make the filter that passes a message once its stamp is confirmed."""
-    leaps = Leaps(far_ns)
+    leaps: Leaps[Any] = Leaps(far_ns)
 
     def take(message: Any) -> None:
         believed, false = leaps.take(stamp_in(message), message)
