@@ -154,7 +154,7 @@ setup(
     },
     entry_points={
         'console_scripts': [
-            *(f'{node} = {PACKAGE}.nodes.{node}:main' for node in NODES),
+            *(f'{node} = {PACKAGE}.nodes.starting:{node}' for node in NODES),
             f'trawl = {PACKAGE}.cli.main:main',
         ],
     },

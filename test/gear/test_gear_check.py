@@ -124,6 +124,32 @@ FAULTS = [
         ),
         'bridles: found upper 60 m, lower 100 m',
     ),
+    (
+        'kaifuha',
+        lambda d: d['warp'].update(weight_in_water_n_m=2.8),
+        'warp.weight_in_water_n_m: found 2.8 N/m for a rope as stiff as a wire of 32 mm, expected '
+        'about 31.7 N/m (2.8 kg/m would be 27.5 N/m)',
+    ),
+    (
+        'krill_800',
+        lambda d: d['bridle'].update(weight_in_water_n_m=0.8),
+        'bridle.weight_in_water_n_m: found 0.8 N/m for a rope as stiff as a wire of 16 mm',
+    ),
+    (
+        'kaifuha',
+        lambda d: d['warp'].update(weight_in_water_n_m=-5.0),
+        'found -5 N/m, which lifts more than any fibre of 32 mm does',
+    ),
+    (
+        'pair_368',
+        lambda d: d['warp'].update(weight_in_water_n_m=-5.0),
+        'found -5 N/m, which lifts more than any fibre of 12 mm does',
+    ),
+    (
+        'kaifuha',
+        lambda d: d['bridle'].update(length_m=12_000.0),
+        'found 12000 m, expected at most 1000 m',
+    ),
 ]
 
 

@@ -15,7 +15,7 @@ from trawl_ros.messages.commands import winch_command
 from trawl_ros.messages.stamps import header
 from trawl_ros.messages.truth_to_messages import clock_message
 from trawl_ros.nodes.graph.source import Source
-from trawl_ros.nodes.runtime.incoming import Incoming, Leaps, believing_clock, decoding
+from trawl_ros.nodes.runtime.incoming import Incoming, believing_clock, decoding
 from trawl_ros.nodes.runtime.turns import Turns
 
 JOINTS = 'sensor_msgs/msg/JointState'
@@ -75,17 +75,6 @@ def test_an_error_in_what_a_message_asks_for_is_the_messages():
 
     with pytest.raises(MessageError, match='no track'):
         decoding(WINCH, JOINTS, use)(serialize(winch_command(1, 2.0, 3.0)[1]))
-
-
-def test_three_stamps_far_from_the_last_are_believed_and_fewer_are_not():
-    leaps = Leaps()
-    far = 2_147_483_647 * SECOND
-    assert leaps.take(100 * SECOND, 'a') == (['a'], 0)
-    assert leaps.take(far, 'false') == ([], 0)
-    assert leaps.take(101 * SECOND, 'b') == (['b'], 1)
-    for stamp, message in ((5, 'c'), (6, 'd')):
-        assert leaps.take(stamp * SECOND, message) == ([], 0)
-    assert leaps.take(7 * SECOND, 'e') == (['c', 'd', 'e'], 0)
 
 
 @pytest.mark.parametrize('second', [-5, 2_147_483_647])

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from itertools import chain, count
 from pathlib import Path
-from tempfile import TemporaryFile
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import TYPE_CHECKING, TextIO
 
 from trawl_ros.core.errors import TrawlError
@@ -139,6 +139,34 @@ def written(path: Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             draft.unlink(missing_ok=True)
+
+
+@contextmanager
+def written_folder(path: Path, error: type[TrawlError]) -> Iterator[Path]:
+    """Write a folder whole or not at all, whenever one is interrupted or the disk is full.
+
+    Yields
+    ------
+    Path
+        A path of the same name elsewhere on the disk, where the folder is to be made; it then
+        takes the other's place.
+
+    Raises
+    ------
+    TrawlError
+        Of the type ``error``, if it cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(dir=path.parent, prefix='.unfinished_') as folder:
+            draft = Path(folder) / path.name
+            try:
+                yield draft
+            except error as reason:
+                raise error(str(reason).replace(str(draft), str(path))) from reason
+            draft.replace(path)
+    except OSError as reason:
+        raise error(f'{path}: cannot be written ({reason.strerror})') from reason
 
 
 def write_text(path: Path, text: str) -> None:

@@ -8,6 +8,7 @@ from rclpy.qos import HistoryPolicy
 
 from trawl_ros.bags.reader import Bag, RawMessage
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.stamps import FAR_NS, lasting, when
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.truth_to_messages import clock_message
@@ -57,6 +58,7 @@ class BagPlayer(TrawlNode):
     )  # fmt: skip
 
     _clock_published = False
+    _far_off = ''
     _latest = 0
 
     def __init__(self, **kwargs: Any) -> None:
@@ -115,7 +117,7 @@ class BagPlayer(TrawlNode):
         if missing:
             text = f'waits for {", ".join(missing)}, which should report on sync/progress'
             return [Status('bag', WARN, self.with_namespace(text), values)]
-        problems = [*self._left_out, *self._bag.problems]
+        problems = [*filter(None, [self._far_off]), *self._left_out, *self._bag.problems]
         if stalled := self._consumers.stalled():
             problems.append(
                 f'goes on without {", ".join(stalled)}, not getting on for {STALLED_S:g} s'
@@ -177,6 +179,7 @@ class BagPlayer(TrawlNode):
             self._play(message)
             if monotonic() > end:
                 return
+        self._announce_pause(message)
         if self._excerpt.upcoming is None:
             self._finish_round()
 
@@ -187,6 +190,19 @@ class BagPlayer(TrawlNode):
             self._pacer.restart()
             return False
         return self._pacer.due(stamp / SECOND)
+
+    def _announce_pause(self, upcoming: RawMessage | None) -> None:
+        """Report a next message that is far off, as after a stamp that cannot be."""
+        rate = self.parameters['rate']
+        wait = upcoming.log_time - self._latest if upcoming and rate else 0
+        far = wait > rate * FAR_NS
+        self._far_off = (
+            f'the next message comes in {lasting(round(wait / rate))}, at '
+            f'{when(self._latest + wait)}; parameter start leaves out what is before it'
+            if far
+            else ''
+        )
+        self.say('next message', WARN if far else OK, self._far_off or 'is near')
 
     def _stand_still(self, slowest: int | None) -> bool:
         """True if consumers have stood still for `QUIET_S`, and none is busy: the rest does not

@@ -1,7 +1,8 @@
 """`bag_recorder`: writes what is published into a bag, byte by byte."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, ClassVar
+from time import monotonic_ns
+from typing import Any, ClassVar, NamedTuple
 
 from rclpy.qos import QoSProfile
 
@@ -14,6 +15,7 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import STORE, type_hash
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.nodes.graph.matching_qos import matching, with_history
+from trawl_ros.nodes.playback.log_time import LogTimes
 from trawl_ros.nodes.playback.recorded_qos import profiles_of
 from trawl_ros.nodes.playback.topic_choice import ALL, TopicChoice
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
@@ -38,12 +40,21 @@ Chunks that end early compress less well: at the pace of a ship a bag takes a te
 NO_HASH = 'INVALID'
 
 
+class _Entry(NamedTuple):
+    """Message to be written: full topic name, type, bytes, and stamp (ns) by which time goes on."""
+
+    topic: str
+    type: str
+    data: bytes
+    stamp: int | None
+
+
 class BagRecorder(TrawlNode):
     """Records the project's topics, those that are chosen, or all.
 
     A message is logged at the stamp of its header, so that a bag replays as things happened
-    and not as they arrived; without a header at the time of the node's clock. ``/clock`` is
-    left out: whoever replays the bag makes a new one.
+    and not as they arrived; without a header, or with a stamp that cannot be, at the time of
+    receipt, which is counted. ``/clock`` is left out: whoever replays the bag makes a new one.
     """
 
     SPECS: ClassVar = (
@@ -68,6 +79,7 @@ class BagRecorder(TrawlNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('bag_recorder', **kwargs)
         self._by_header = self.parameters['log_time'] == 'header'
+        self._log_times = LogTimes()
         self._latest: dict[str, int] = {}
         self._jumps = 0
         self._unknown: set[str] = set()
@@ -116,6 +128,11 @@ class BagRecorder(TrawlNode):
             **{f'recorded {topic}': str(count) for topic, count in counts.items()},
         }
         problems = []
+        if replaced := self._log_times.replaced:
+            problems.append(
+                f'{replaced} messages have a stamp that cannot be, and are logged at the time of '
+                'receipt'
+            )
         if self._jumps:
             problems.append(
                 f'time was set back {self._jumps} times, so tows lie over each other in the bag; '
@@ -133,6 +150,7 @@ class BagRecorder(TrawlNode):
 
     def finish_work(self) -> None:
         """Finish the bag."""
+        self._write(self._log_times.give_up(monotonic_ns(), whole=True))
         self._bag.close()
         total = sum(self._bag.counts.values())
         self.get_logger().info(f'{self._bag.path}: {total} messages')
@@ -148,15 +166,23 @@ class BagRecorder(TrawlNode):
 
         def take(data: bytes) -> None:
             stamp = header_stamp(type_name, data)
-            logged = self.now() if stamp is None or not by_header else stamp
             if not self._bag.declared(topic):
                 self._declare(topic, type_name)
-            self._bag.write(topic, type_name, data, logged)
-            self._dirty = True
-            if timed and stamp is not None:
-                self._follow(topic, stamp)
+            entry = _Entry(topic, type_name, data, stamp if timed else None)
+            if self._by_header:
+                used = stamp if by_header else None
+                self._write(self._log_times.take(used, self.now(), entry))
+            else:
+                self._write([(self.now(), entry)])
 
         return take
+
+    def _write(self, timed: Sequence[tuple[int, '_Entry']]) -> None:
+        for log_time, entry in timed:
+            self._bag.write(entry.topic, entry.type, entry.data, log_time)
+            self._dirty = True
+            if entry.stamp == log_time:
+                self._follow(entry.topic, entry.stamp)
 
     def _declare(self, topic: str, type_name: str) -> None:
         """Fix the definition of a topic, by its publishers when the first message comes."""
@@ -183,6 +209,7 @@ class BagRecorder(TrawlNode):
         return any(name in self._latest for name in self._pacing)
 
     def _look_after(self) -> None:
+        self._write(self._log_times.give_up(monotonic_ns()))
         if self._dirty:
             self._bag.flush()
             self._dirty = False

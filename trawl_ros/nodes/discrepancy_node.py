@@ -201,7 +201,8 @@ class DiscrepancyNode(TrawlNode):
         with self._telling:
             acknowledged = self._acknowledged
             told = [onset_status(one, one.number in acknowledged) for one in self._newest_told()]
-            self.send(FINDINGS, diagnostic_array(self._reached.stamp, [*self._verdict, *told]))
+            stamp = self._reached.stamp or self.now()
+            self.send(FINDINGS, diagnostic_array(stamp, [*self._verdict, *told]))
 
     def _newest_told(self) -> list[Finding]:
         """Newest findings of what has begun."""

@@ -274,7 +274,7 @@ class IdentificationNode(TrawlNode):
                 statuses.append(advice_status(advice, trouble))
                 knowledge = replace(knowledge_of(advice, windows), trouble=trouble)
                 statuses.append(knowledge_status(knowledge))
-            stamp = outcome.told.stamp if outcome.told else outcome.stamp
+            stamp = outcome.told.stamp if outcome.told else outcome.stamp or self.now()
             self.send(STATUS, diagnostic_array(stamp, statuses))
 
     async def _finish(self, request: Any, response: Any) -> Any:

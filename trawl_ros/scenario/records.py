@@ -166,4 +166,10 @@ class ScenarioRecord(Record):
             raise ValueError(
                 f'steps: found {minutes:g} minutes in all, expected at most {60 * MAX_HOURS}'
             )
+        for number, fault in enumerate(self.faults):
+            if fault.at_min >= minutes:
+                raise ValueError(
+                    f'faults[{number}].at_min: found {fault.at_min:g}, expected less than the '
+                    f'{minutes:g} minutes of all steps'
+                )
         return self

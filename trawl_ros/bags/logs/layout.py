@@ -129,6 +129,9 @@ def read_rows(
     encoding = 'utf-8-sig' if layout.encoding.lower() in ('utf-8', 'utf8') else layout.encoding
     with reading(path, LogError), open_file(path, LogError) as content:
         try:
+            if content.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+                encoding = 'utf-16'
+            content.seek(0)
             stream = TextIOWrapper(content, encoding, newline='')
             rows = _wide(path, layout, needed, _Lines(path, stream, layout))
             yield from (
@@ -163,7 +166,11 @@ class _Lines:
         raise StopIteration
 
     def _next(self) -> str:
-        line = self._stream.readline(MAX_LINE)
+        line = '\0'
+        # A loss of power leaves blocks of NULs.
+        while line and not line.strip('\0'):
+            line = self._stream.readline(MAX_LINE)
+        line = line.replace('\0', '')
         self.number += bool(line)
         if len(line) == MAX_LINE:
             raise LogError(

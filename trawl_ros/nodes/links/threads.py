@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from trawl_ros.core.foreign import short
 from trawl_ros.nodes.links.channels import Channel, LinkAddress, open_channel
-from trawl_ros.sentences.framing import LineSplitter
+from trawl_ros.sentences.framing import SentenceSplitter
 
 WAITING_LINES = 5000
 """Lines that wait at most, in or out; older ones are given up and counted."""
@@ -108,10 +108,10 @@ class LineSource(LinkThread):
         return self._take(most)
 
     def _work(self, channel: Channel) -> None:
-        splitters: dict[int, LineSplitter] = {}
+        splitters: dict[int, SentenceSplitter] = {}
         while not self._stop.is_set():
             for source, data, sender in channel.poll(POLL_S):
-                splitter = splitters.setdefault(source, LineSplitter())
+                splitter = splitters.setdefault(source, SentenceSplitter())
                 before = splitter.too_long
                 feed = splitter.datagram if channel.datagrams else splitter.feed
                 for line in feed(data):
