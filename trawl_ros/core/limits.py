@@ -32,7 +32,8 @@ class Limit:
 YAML_BYTES = Limit(1_000_000, 'bytes', 'size of a YAML file of the project')
 YAML_DEPTH = Limit(20, 'levels', 'nesting of a YAML file of the project')
 YAML_VALUES = Limit(20_000, 'values', 'keys and values in a YAML file of the project')
-YAML_NUMBER = Limit(10**18, '', 'magnitude of a number in a YAML file of the project')
+YAML_NUMBER = Limit(10**18, '', 'magnitude of a number in a YAML or JSON file of the project')
+JSON_BYTES = Limit(50_000_000, 'bytes', 'size of a JSON file of the project, as `estimate`')
 GEAR_NODES = Limit(30_000, 'nodes', 'nodes of the net that a gear file asks for')
 
 MESSAGE_BYTES = Limit(100_000, 'bytes', 'size of a message that a node decodes')

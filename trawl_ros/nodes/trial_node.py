@@ -13,6 +13,7 @@ from trawl_ros.control.trial.machine import Trial
 from trawl_ros.control.trial.memory import TrialMemory, load_memory, save_memory
 from trawl_ros.control.trial.records import TrialCommand, TrialSettings, TrialState
 from trawl_ros.core.errors import MessageError, TrawlError
+from trawl_ros.core.files import is_there
 from trawl_ros.core.time import SECOND
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.commands import (
@@ -136,7 +137,7 @@ class TrialNode(TrawlNode):
         return trial_settings(self.parameters, self._gear)
 
     def _resumed(self) -> TrialMemory | None:
-        if self._file is None or not self._file.exists():
+        if self._file is None or not is_there(self._file, TrawlError):
             return None
         memory = load_memory(self._file)
         self.get_logger().info(

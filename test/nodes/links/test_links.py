@@ -178,8 +178,38 @@ def test_a_file_in_the_place_of_a_pseudo_terminal_stays(opened, tmp_path):
     path = tmp_path / 'notes'
     path.write_text('mine')
     sink = opened(SentenceSink, f'pty:{path}')
-    until(lambda: 'a file already' in sink.state)
+    until(lambda: 'something already' in sink.state)
     assert path.read_text() == 'mine'
+
+
+@pytest.mark.parametrize('target', ['notes', 'nowhere', '/dev/null'])
+def test_a_link_of_somebody_else_in_the_place_of_a_pseudo_terminal_stays(opened, tmp_path, target):
+    (tmp_path / 'notes').write_text('mine')
+    link = tmp_path / 'link'
+    link.symlink_to(target)
+    sink = opened(SentenceSink, f'pty:{link}')
+    until(lambda: 'something already' in sink.state)
+    assert str(link.readlink()) == target
+
+
+def test_a_pseudo_terminal_in_use_keeps_its_link(opened, tmp_path):
+    path = tmp_path / 'tty'
+    first = opened(SentenceSink, f'pty:{path}')
+    until(lambda: first.state == '')
+    name = path.readlink()
+    second = opened(SentenceSink, f'pty:{path}')
+    until(lambda: 'something already' in second.state)
+    assert path.readlink() == name
+
+
+def test_the_link_that_a_kill_left_is_replaced(opened, tmp_path):
+    path = tmp_path / 'tty'
+    master, slave = pty.openpty()
+    path.symlink_to(os.ttyname(slave))
+    os.close(master)
+    os.close(slave)
+    sink = opened(SentenceSink, f'pty:{path}')
+    until(lambda: sink.state == '')
 
 
 def test_half_lines_of_a_port_are_put_together(opened):

@@ -215,7 +215,10 @@ class _Stream(Channel):
 
     def close(self) -> None:
         if self._link is not None:
-            self._link.unlink(missing_ok=True)
+            with suppress(OSError):
+                # Another link may have taken its place.
+                if str(self._link.readlink()) == os.ttyname(self._also):
+                    self._link.unlink()
         for number in (self._number, self._also):
             if number >= 0:
                 os.close(number)
@@ -319,11 +322,29 @@ def _open_serial(address: LinkAddress) -> int:
 
 
 def _open_pty(path: Path) -> Channel:
-    if os.path.lexists(path) and not path.is_symlink():
-        raise OSError(0, 'there is a file already, expected a new path')
     master, slave = pty.openpty()
-    # Kept open on both ends, so that a reader may come and go.
-    tty.setraw(slave)
-    path.unlink(missing_ok=True)
-    path.symlink_to(os.ttyname(slave))
+    try:
+        # Kept open on both ends, so that a reader may come and go.
+        tty.setraw(slave)
+        name = os.ttyname(slave)
+        if os.path.lexists(path) and not _is_left_over(path, name):
+            raise OSError(0, 'there is something already, expected a new path')
+        path.unlink(missing_ok=True)
+        path.symlink_to(name)
+    except OSError:
+        os.close(master)
+        os.close(slave)
+        raise
     return _Stream(master, slave, path)
+
+
+def _is_left_over(path: Path, name: str) -> bool:
+    """Return whether a link is that of a pseudo-terminal that is gone, as after a kill.
+
+    Its number is free, or is given again to the terminal called ``name``.
+    """
+    if not path.is_symlink():
+        return False
+    target = path.readlink()
+    left = str(target) == name or not target.exists()
+    return left and target.parent == Path('/dev/pts')
