@@ -13,6 +13,7 @@ import click
 
 from trawl_ros.cli.loaded_group import LoadedGroup
 from trawl_ros.core.errors import TrawlError, sentence_of
+from trawl_ros.core.first_start import need_home
 from trawl_ros.core.version import __version__
 
 COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -106,6 +107,7 @@ def trawl() -> None:
 def main(args: Sequence[str] | None = None) -> None:
     """Run ``trawl``; termination ends it as orderly as Ctrl-C does."""
     signal.signal(signal.SIGTERM, _interrupt)
+    need_home()
     for stream in (sys.stdout, sys.stderr):
         # Names of files may hold bytes that are no text.
         if isinstance(stream, TextIOWrapper):

@@ -13,8 +13,6 @@ from trawl_ros.messages.commands import VESSEL_COMMAND, WINCH_COMMAND
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
-from trawl_ros.model.bar_pass import add_bar_blocks
-from trawl_ros.model.compiled import is_cached
 from trawl_ros.nodes.runtime.credit import SILENT_S, STALLED_S, Consumers
 from trawl_ros.nodes.runtime.message_classes import installed
 from trawl_ros.nodes.runtime.node import TrawlNode
@@ -97,8 +95,6 @@ class SimNode(TrawlNode):
             self.advertise(TRANSFORMS.name)
         self._consumers = Consumers(self, self.parameters['wait_for'])
         self._pacer = Pacer(self.parameters['time_scale'])
-        if not is_cached(add_bar_blocks):
-            self.get_logger().info('compiles the model, once on this machine: half a minute')
         self._tow, self._period = self._prepare()
         self._problem: str | None = None
         self._paused = False
