@@ -135,7 +135,7 @@ class SimNode(TrawlNode):
             'wanted starboard warp': f'{command.starboard_length:g}',
             'wanted speed': f'{command.speed:g}',
             'wanted rate of turn': f'{command.turn_rate:g}',
-            'waits for': ', '.join(missing),
+            'waits for': ', '.join([*missing, *self._consumers.waited_for()]),
             'fallen boards': fallen_sides(self._tow.simulation),
         }
         if self._scenario is not None:
@@ -154,6 +154,8 @@ class SimNode(TrawlNode):
         if stalled := self._consumers.stalled():
             names = ', '.join(stalled)
             return WARN, f'goes on without {names}, not getting on for {STALLED_S:g} s'
+        if slow := self._consumers.waited_for():
+            return WARN, f'waits for {", ".join(slow)}, which gets on too slowly'
         if fallen := fallen_sides(self._tow.simulation):
             return WARN, f'board fallen: {fallen}; towed on, expected more speed or less warp'
         if self._paused:
