@@ -68,7 +68,6 @@ TEST = [
     'setuptools>=64,<80',
     'types-PyYAML>=6,<7',
     'uv>=0.5,<1',
-    'websockets>=13,<18',
 ]
 
 # The site of `make docs`; tests build it, since a warning fails it.
@@ -85,9 +84,9 @@ PEERS = [
     'trawlkit>=1.1,<1.2; python_version >= "3.11"',
 ]
 
-# For people who look on, of whom aboard there are none: wheels of 19 and of 170 MB. Tests that need
-# the larger one are skipped without it.
-FOXGLOVE = ['foxglove-sdk>=0.30.3,<0.31']
+# For people who look on, of whom aboard there are none: a small library and one of 170 MB.
+# Tests that need the larger one are skipped without it.
+FOXGLOVE = ['websockets>=14,<18']
 VIEW = [*FOXGLOVE, 'rerun-sdk>=0.39,<0.42']
 
 
