@@ -153,7 +153,7 @@ class NmeaIn(TrawlNode):
             'lines too long': str(source.too_long),
             'opened': str(source.opened),
         }
-        problems = [source.state] if source.state else []
+        problems = [text for text in (source.state, source.turned_away) if text]
         if source.lost:
             problems.append(f'{source.lost} lines came faster than they can be read')
         message = '; '.join(problems) or 'open'
