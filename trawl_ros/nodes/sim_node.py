@@ -20,7 +20,7 @@ from trawl_ros.nodes.runtime.pacer import Pacer
 from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.tow_commands import LENGTHS, SPEEDS, wanted_lengths, wanted_motion
+from trawl_ros.nodes.tow_commands import wanted_lengths, wanted_motion
 from trawl_ros.nodes.towing import (
     DEFAULT_START,
     CommandedTow,
@@ -29,6 +29,7 @@ from trawl_ros.nodes.towing import (
     fallen_sides,
 )
 from trawl_ros.records.topics import CLOCK, TRANSFORMS, TRUTH
+from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.scenario.run import Trial
@@ -56,9 +57,9 @@ class SimNode(TrawlNode):
         Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package.'),
         Text('scenario', '', 'Scenario file or name: its gear, start, commands and end are used.'),
         Flag('exit_at_end', False, 'Whether to end with the scenario.'),
-        Number('warp_length_m', DEFAULT_START[0], 'm', *LENGTHS,
+        Number('warp_length_m', DEFAULT_START[0], 'm', *LIMITS.warp_m,
                'Length of both warps at the start.'),
-        Number('speed_m_s', DEFAULT_START[1], 'm/s', *SPEEDS,
+        Number('speed_m_s', DEFAULT_START[1], 'm/s', *LIMITS.speed_m_s,
                'Speed through the water at the start.'),
         Number('heading_deg', 0.0, 'deg', -360.0, 360.0, 'First heading as ENU yaw.'),
         Number(
