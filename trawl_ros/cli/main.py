@@ -55,6 +55,11 @@ class Trawl(LoadedGroup):
             return super().invoke(ctx)
         except TrawlError as error:
             raise click.ClickException(printable(sentence_of(error))) from error
+        except SystemExit as error:
+            # No command of the project ends so; code of other packages, as of an effect, may.
+            if error.code not in (None, 0):
+                raise
+            raise click.ClickException('code of another package ended the command') from error
 
     def main(self, *args: Any, **options: Any) -> Any:
         """Run it all; what the system refuses ends with one sentence and exit code 1.

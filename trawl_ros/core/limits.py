@@ -40,7 +40,9 @@ MESSAGE_BYTES = Limit(100_000, 'bytes', 'size of a message that a node decodes')
 SCAN_BYTES = Limit(5_000_000, 'bytes', 'size of a LaserScan, DiagnosticArray or MarkerArray')
 IMAGE_BYTES = Limit(100_000_000, 'bytes', 'size of an Image or PointCloud2')
 SENTENCE = Limit(300, 'characters', 'what a node says of a message, in its log and diagnostics')
-DIAGNOSIS = Limit(1000, 'characters', 'a sentence or value on /diagnostics')
+DIAGNOSIS = Limit(
+    1000, 'characters', 'a sentence or value on /diagnostics, or on a fault of a record'
+)
 TRUTH = Limit(10**9, '', 'magnitude of a number in truth, in the units of ROS')
 CONSUMERS = Limit(100, '', 'consumers that a source takes note of')
 VIEWERS = Limit(20, '', 'viewers of `foxglove_node`')

@@ -91,7 +91,7 @@ class TrialNode(TrawlNode):
         self._gear = gear
         state = self.parameters['state']
         self._file = Path(state) if state else None
-        self._trouble = ''
+        self._trouble = self._obeyed = ''
         memory = self._resumed()
         self._trial = Trial(self._settings(), build_water(gear).depth, memory)
         self._saved = memory
@@ -181,7 +181,10 @@ class TrialNode(TrawlNode):
 
     def _obey(self, act: Callable[[], str]) -> str:
         sentence = act()
-        self.get_logger().info(sentence)
+        # Whoever calls often would fill the log.
+        if sentence != self._obeyed:
+            self._obeyed = sentence
+            self.get_logger().info(sentence)
         self._updated = 0
         self._update(self._time())
         return sentence

@@ -109,6 +109,10 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
         except TrawlError as reason:
             print(f'{program}: {sentence_of(reason)}', file=sys.stderr)  # noqa: T201
             return 1
+        except SystemExit as reason:
+            said = f'code of another package ended the node (exit {reason.code})'
+            print(f'{program}: {said}', file=sys.stderr)  # noqa: T201
+            return 1
         except (ExternalShutdownException, ROSInterruptException, KeyboardInterrupt):
             return 0
         finally:
