@@ -65,7 +65,7 @@ TEST = [
     'pytest-xdist>=3.6,<4',
     'ruff>=0.8,<1',
     # setup.py is still run as a command by colcon, which setuptools 80 gave up.
-    'setuptools>=64,<80',
+    'setuptools>=78.1.1,<80',
     'types-PyYAML>=6,<7',
     'uv>=0.5,<1',
 ]
@@ -116,14 +116,15 @@ setup(
         *tree('bags'),
         *tree('launch'),
     ],
+    # Lower bounds exclude versions with published holes.
     install_requires=[
         'click>=8.1,<9',
-        'cryptography>=41,<60',
+        'cryptography>=42.0.4,<60',
         'dask>=2024.8,<2027',
         'distributed>=2024.8,<2027',
         'google-re2>=1.1.20240702,<2',
         'gsw>=3.6,<4',
-        'jinja2>=3.1,<4',
+        'jinja2>=3.1.6,<4',
         'lz4>=4,<5',
         'matplotlib>=3.6,<4',
         'mcap>=1.6,<1.7',
