@@ -62,12 +62,13 @@ def _compiled(function: Callable[Given, Result], **options: object) -> Compiled[
     # numba's types lack some of the options.
     loop: Any = njit(**OPTIONS, **options)(function)  # type: ignore[call-overload]
     if FOLDER.path is not None:
-        before, config.CACHE_DIR = config.CACHE_DIR, str(FOLDER.path)
+        settings: Any = config
+        before, settings.CACHE_DIR = settings.CACHE_DIR, str(FOLDER.path)
         # Where the folder was lost since it was chosen, the loop is compiled at each start.
         with suppress(RuntimeError):
             loop._cache = _LoopCache(function)
         # Other packages keep theirs where they did.
-        config.CACHE_DIR = before
+        settings.CACHE_DIR = before
     return cast(Compiled[Result], loop)
 
 

@@ -70,7 +70,8 @@ class NmeaIn(TrawlNode):
              'command/winch and command/vessel.'),
         Number('command_timeout_s', 10.0, 's', 0.5, 600.0, 'Silence of set points after which the '
                'winches are told to hold.'),
-        Number('min_length_m', 50.0, 'm', 0.0, 5000.0, 'Least warp that a set point may want.'),
+        Number('min_length_m', 50.0, 'm', 0.0, LIMITS.warp_m[1],
+               'Least warp that a set point may want.'),
         Number('max_length_m', 2000.0, 'm', 0.0, LIMITS.warp_m[1],
                'Most warp that a set point may want.'),
         Number('max_step_m', 50.0, 'm', 0.1, 5000.0, 'Furthest that a set point may be from the '

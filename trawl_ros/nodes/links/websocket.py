@@ -261,8 +261,10 @@ class ViewerServer:
 
     def _greetings(self) -> list[dict[str, object]]:
         capabilities = ['time'] if self._tells_time else []
-        info = {'op': 'serverInfo', 'name': self._name, 'capabilities': capabilities}
-        return [info, {'op': 'advertise', 'channels': self._channels}]
+        return [
+            {'op': 'serverInfo', 'name': self._name, 'capabilities': capabilities},
+            {'op': 'advertise', 'channels': self._channels},
+        ]
 
     def _take(self, viewer: _Viewer, packet: str | bytes) -> None:
         """Note what a viewer wants; what it may not say, or what is nonsense, is left out."""
