@@ -22,6 +22,7 @@ from trawl_ros.solver.cold_start import cold_start
 from trawl_ros.solver.first_guess import at_velocity, shifted_to
 from trawl_ros.solver.growing_mode import growing_mode
 from trawl_ros.solver.last_state import followed
+from trawl_ros.solver.linear.search_budget import budgeted
 from trawl_ros.solver.operating_point import OperatingPoint, remedy_command, steady_tow
 from trawl_ros.solver.relax import (
     DRIFT_LIMIT,
@@ -31,7 +32,6 @@ from trawl_ros.solver.relax import (
     WARM_TIME_STEP,
     relax,
 )
-from trawl_ros.solver.search_budget import budgeted
 from trawl_ros.solver.stability import Stability, stability
 from trawl_ros.solver.warm_start import Tangent, warm_start_in_parts
 

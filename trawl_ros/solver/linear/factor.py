@@ -14,7 +14,7 @@ from trawl_ros.model.pattern import SparsityPattern
 from trawl_ros.solver.frontal.elimination import Elimination, elimination
 from trawl_ros.solver.frontal.fronts import factorise, solve
 from trawl_ros.solver.frontal.many_rights import solve_many
-from trawl_ros.solver.search_budget import spend
+from trawl_ros.solver.linear.search_budget import spend
 
 PIVOT_THRESHOLD = 0.01
 """Least ratio of a diagonal pivot to the largest of its column with which SuperLU keeps it."""

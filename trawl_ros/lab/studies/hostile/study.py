@@ -229,7 +229,7 @@ def _viewer(node: Any, executor: SingleThreadedExecutor, topics: list[str]) -> I
 
     url = f'ws://{THIS_MACHINE}:{node.parameters["port"]}'
     with connect(url, subprotocols=[Subprotocol(PROTOCOL)], max_size=None) as line:
-        # What is passed on is read and thrown away.
+        # Read what is passed on and throw it away.
         Thread(target=lambda: deque(line, 0), daemon=True).start()
         wishes = [
             {'id': number, 'channelId': number + 1}

@@ -11,9 +11,8 @@ from trawl_ros.core.schema import validated
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.solver import search_budget
 from trawl_ros.solver.equilibrium import find_equilibrium, steady_state
-from trawl_ros.solver.linear import factor
+from trawl_ros.solver.linear import factor, search_budget
 from trawl_ros.solver.operating_point import OperatingPoint
 
 
