@@ -29,8 +29,6 @@ NODES = (
 # What a full ROS 2 (Ubuntu 24.04) gives by the rosdep keys that package.xml names.
 BY_ROSDEP = {
     'click>=8.1,<9': 'python3-click',
-    'cryptography>=41,<60': 'python3-cryptography',
-    'jinja2>=3.1,<4': 'python3-jinja2',
     'matplotlib>=3.6,<4': 'python3-matplotlib',
     'numpy>=1.26,<3': 'python3-numpy',
     'psutil>=5.9,<8': 'python3-psutil',
@@ -40,10 +38,14 @@ BY_ROSDEP = {
 }
 
 # What has no rosdep key, or is too old there: the README's line of pip, which tests hold to this.
+# Lower bounds exclude versions with published holes.
 BY_PIP = [
+    'cryptography>=42.0.4,<60',
     'dask>=2024.8,<2027',
     'distributed>=2024.8,<2027',
+    'google-re2>=1.1.20240702,<2',
     'gsw>=3.6,<4',
+    'jinja2>=3.1.6,<4',
     'lz4>=4,<5',
     'mcap>=1.6,<1.7',
     'numba>=0.60,<1',
@@ -92,10 +94,9 @@ TEST = [
     'pytest-xdist>=3.6,<4',
     'ruff>=0.8,<1',
     # setup.py is still run as a command by colcon, which setuptools 80 gave up.
-    'setuptools>=64,<80',
+    'setuptools>=78.1.1,<80',
     'types-PyYAML>=6,<7',
     'uv>=0.5,<1',
-    'websockets>=13,<18',
 ]
 
 # The site of `make docs`; tests build it, since a warning fails it.
@@ -112,9 +113,9 @@ PEERS = [
     'trawlkit>=1.1,<1.2; python_version >= "3.11"',
 ]
 
-# For people who look on, of whom aboard there are none: wheels of 19 and of 170 MB. Tests that need
-# the larger one are skipped without it.
-FOXGLOVE = ['foxglove-sdk>=0.30.3,<0.31']
+# For people who look on, of whom aboard there are none: a small library and one of 170 MB.
+# Tests that need the larger one are skipped without it.
+FOXGLOVE = ['websockets>=14,<18']
 VIEW = [*FOXGLOVE, 'rerun-sdk>=0.39,<0.42']
 
 

@@ -239,6 +239,7 @@ def test_a_table_becomes_a_plan_that_reads_back_the_same(tmp_path: Path, mark: s
         (GOOD.replace('wing;upper', 'flap;upper'), "line 3: part: found 'flap'"),
         (GOOD.replace('codend;all', 'body;all'), 'found no codend'),
         (GOOD.replace('body;lower', 'body;"lower'), 'found no table'),
+        (GOOD.replace('body;lower', 'body;lo\x1b[2Jwer'), 'a control character'),
     ],
 )
 def test_a_table_that_is_no_plan_is_refused_with_its_line(
@@ -247,6 +248,15 @@ def test_a_table_that_is_no_plan_is_refused_with_its_line(
     with pytest.raises(GearError) as caught:
         read_plan(table_of(tmp_path, text))
     assert part in str(caught.value)
+
+
+def test_a_huge_table_and_a_device_are_refused_at_once(tmp_path: Path) -> None:
+    huge = tmp_path / 'huge.csv'
+    with huge.open('wb') as file:
+        file.truncate(10**10)
+    for path in (huge, Path('/dev/zero'), tmp_path):
+        with pytest.raises(GearError, match='expected a'):
+            read_plan(path)
 
 
 def test_doors_are_listed_with_their_sources() -> None:

@@ -17,7 +17,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[2]
-OPTIONAL = {'foxglove', 'rerun', 'rerun_cli', 'moordyn', 'moorpy', 'trawlkit', 'tf2_msgs'}
+OPTIONAL = {'websockets', 'rerun', 'rerun_cli', 'moordyn', 'moorpy', 'trawlkit', 'tf2_msgs'}
 """Of extras; each is looked for where it is used, and its absence is a sentence."""
 
 WITH_ANOTHER = {'pydantic_core': 'pydantic', '_typeshed': ''}

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from itertools import chain, count
@@ -205,15 +206,38 @@ def write_figure(path: Path, figure: 'Figure', dpi: float) -> None:
 
 
 def appending(path: Path) -> TextIO:
-    """Open a text file of results to add to it; a link is refused, not followed.
+    """Open a text file of results to add to it; a link, pipe or device is refused.
 
     Raises
     ------
     TrawlError
         If it cannot be opened.
     """
-    flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NOFOLLOW
+    # Without O_NONBLOCK, opening a pipe that nobody reads would wait for ever.
+    flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
     try:
-        return os.fdopen(os.open(path, flags, 0o666), 'a', encoding='utf-8')
+        number = os.open(path, flags, 0o666)
     except OSError as reason:
         raise TrawlError(f'{path}: cannot be written ({reason.strerror})') from reason
+    if not stat.S_ISREG(os.fstat(number).st_mode):
+        os.close(number)
+        raise TrawlError(f'{path}: is a pipe or device; expected a file or a new path')
+    return os.fdopen(number, 'a', encoding='utf-8')
+
+
+def is_there(path: Path, error: type[TrawlError]) -> bool:
+    """Return whether a file that a node continues, and will replace, exists.
+
+    Whoever continues it checks by its content that it is its own before it writes.
+
+    Raises
+    ------
+    TrawlError
+        Of the type ``error``, if something other than a file is there: a link would be replaced,
+        and a pipe or device would be read without end.
+    """
+    if not os.path.lexists(path):
+        return False
+    if not stat.S_ISREG(path.lstat().st_mode):
+        raise error(f'{path}: is a link, folder, pipe or device; expected a file or a new path')
+    return True

@@ -40,7 +40,7 @@ class KiteRecord(Record):
     Its rear carrying point lies ``chord_m`` of stretched netting behind the headrope.
     """
 
-    area_m2: Positive
+    area_m2: Annotated[float, Field(gt=0, le=1000)]
     mass_kg: NotNegative
     volume_m3: NotNegative
     setting_deg: Degrees
@@ -54,7 +54,7 @@ class ClumpRecord(Record):
     """A weight at each lower wing tip."""
 
     weight_in_water_n: NotNegative
-    density_kg_m3: Annotated[float, Field(gt=1100)]
+    density_kg_m3: Annotated[float, Field(gt=1100, le=25_000)]
     drag_area_m2: NotNegative
 
 
@@ -62,7 +62,7 @@ class FloatRecord(Record):
     """Floats at each upper wing tip."""
 
     buoyancy_n: NotNegative
-    density_kg_m3: Annotated[float, Field(gt=0, lt=900)]
+    density_kg_m3: Annotated[float, Field(ge=1, lt=900)]
     drag_area_m2: NotNegative
 
 

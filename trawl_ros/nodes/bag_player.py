@@ -108,11 +108,12 @@ class BagPlayer(TrawlNode):
     def statuses(self) -> list[Status]:
         """Return the status of the replay."""
         missing = [] if self._began else self._consumers.missing()
+        slow = self._consumers.waited_for() if self._held_up else []
         values = {
             'bag': str(self._bag.path),
             'played until': f'{self._latest / 1e9:.1f}',
             'rounds': str(self._rounds),
-            'waits for': ', '.join(missing),
+            'waits for': ', '.join([*missing, *slow]),
         }
         if missing:
             text = f'waits for {", ".join(missing)}, which should report on sync/progress'
@@ -122,6 +123,8 @@ class BagPlayer(TrawlNode):
             problems.append(
                 f'goes on without {", ".join(stalled)}, not getting on for {STALLED_S:g} s'
             )
+        if slow:
+            problems.append(f'waits for {", ".join(slow)}, which gets on too slowly')
         if problems:
             return [Status('bag', WARN, '; '.join(problems), values)]
         if self._paused:
@@ -159,6 +162,7 @@ class BagPlayer(TrawlNode):
         return list(topics)
 
     def _begin(self) -> None:
+        self._held_up = False
         first = self._excerpt.begin()
         self._latest = first.log_time
         self._clocked: int | None = None
@@ -186,7 +190,8 @@ class BagPlayer(TrawlNode):
     def _may_go_on(self, stamp: int) -> bool:
         lead = round(self.parameters['lead_s'] * SECOND)
         followed = self._consumers.followed(self._latest - lead)
-        if not followed and not self._stand_still(self._consumers.slowest()):
+        self._held_up = not followed and not self._stand_still(self._consumers.slowest())
+        if self._held_up:
             self._pacer.restart()
             return False
         return self._pacer.due(stamp / SECOND)
@@ -247,7 +252,7 @@ class BagPlayer(TrawlNode):
 
     def _end_if_done(self) -> None:
         slowest = self._consumers.slowest()
-        reached = slowest is None or slowest >= self._latest or self._stand_still(slowest)
+        reached = self._consumers.followed(self._latest) or self._stand_still(slowest)
         if reached and self.all_acknowledged(1.0):
             for problem in self._bag.problems:
                 self.get_logger().warning(problem)

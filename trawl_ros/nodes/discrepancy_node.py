@@ -228,6 +228,9 @@ class DiscrepancyNode(TrawlNode):
 
     def _acknowledge(self) -> str:
         finding = self._newest_finding()
+        if finding.number in self._acknowledged:
+            # Written again and again, it would drive what is older out of the log book.
+            return f'finding {finding.number} is acknowledged already: {finding.sentence()}'
         self._acknowledged.add(finding.number)
         self._log('acknowledged', finding, who=OPERATOR)
         self._send_findings()

@@ -10,7 +10,7 @@ from trawl_ros.messages.diagnostics import OK, Status
 from trawl_ros.nodes.runtime.incoming import size_limit
 from trawl_ros.nodes.runtime.message_classes import installed
 from trawl_ros.nodes.runtime.node import TrawlNode
-from trawl_ros.nodes.runtime.parameters import Number, Text
+from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import LATCHED, STREAM
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.records.topics import STATIC_TRANSFORMS, TOPICS, Topic
@@ -33,6 +33,8 @@ class FoxgloveNode(TrawlNode):
         Text('host', THIS_MACHINE, 'Address of this machine at which viewers may connect. Whoever '
              f'reaches another one than {THIS_MACHINE} sees all topics.'),
         Number('port', 8765, 'TCP', 1, 65_535, 'Port at which viewers may connect.', whole=True),
+        Names('origins', 'Origins of web pages that may connect, beside those of this machine.',
+              ('https://app.foxglove.dev', 'file://')),
         Number('backlog', 200, 'messages', 10, 5000, 'Messages that wait for a slow viewer at '
                'most; older ones are given up.', whole=True),
     )  # fmt: skip
@@ -65,6 +67,7 @@ class FoxgloveNode(TrawlNode):
         values = {
             'viewers': str(viewers),
             'topics wanted': str(len(self._heard)),
+            'last refused': self._server.refused,
             'messages passed on': str(self._passed.total()),
             **{f'passed on {topic}': str(count) for topic, count in self._passed.items()},
         }
@@ -80,12 +83,13 @@ class FoxgloveNode(TrawlNode):
             from trawl_ros.nodes.links.websocket import ViewerServer
         except ImportError as reason:
             raise TrawlError(
-                f'foxglove_node needs foxglove-sdk and found no {reason.name}; expected the extra '
+                f'foxglove_node needs websockets and found no {reason.name}; expected the extra '
                 "`view`: pip install 'trawl_ros[view]'"
             ) from reason
         backlog = int(self.parameters['backlog'])
         name = self.get_fully_qualified_name()
-        return ViewerServer(host, port, name, backlog, tells_time=self._simulated)
+        origins = self.parameters['origins']
+        return ViewerServer(host, port, name, backlog, origins, tells_time=self._simulated)
 
     def _look(self) -> None:
         """Listen to what viewers want, and to nothing else."""

@@ -6,7 +6,12 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, ClassVar
 
-from trawl_ros.estimation.checkpoint.file import load_checkpoint, save_checkpoint
+from trawl_ros.core.files import is_there
+from trawl_ros.estimation.checkpoint.file import (
+    CheckpointError,
+    load_checkpoint,
+    save_checkpoint,
+)
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.from_gear import (
     board_prior,
@@ -160,7 +165,7 @@ class IdentificationNode(TrawlNode):
                 prior=self.parameters['prior'], net=self.parameters['net']
             ),
         )
-        if self._state is None or not self._state.exists():
+        if self._state is None or not is_there(self._state, CheckpointError):
             return fresh
         resumed = load_checkpoint(self._state, fresh, self._gear)
         self.get_logger().info(

@@ -28,6 +28,7 @@ from trawl_ros.nodes.runtime.run import run
 from trawl_ros.records.fields import FIELDS, WaterColumn
 from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample, WinchSample
+from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.sentences.assembly import SampleAssembly
 from trawl_ros.sentences.codec import SentenceReader, Spoken
 from trawl_ros.sentences.framing import Foreign, Frame, Unreadable, parse_line
@@ -71,11 +72,14 @@ class NmeaIn(TrawlNode):
              'command/winch and command/vessel.'),
         Number('command_timeout_s', 10.0, 's', 0.5, 600.0, 'Silence of set points after which the '
                'winches are told to hold.'),
-        Number('min_length_m', 50.0, 'm', 0.0, 5000.0, 'Least warp that a set point may want.'),
-        Number('max_length_m', 2000.0, 'm', 0.0, 5000.0, 'Most warp that a set point may want.'),
+        Number('min_length_m', 50.0, 'm', 0.0, LIMITS.warp_m[1],
+               'Least warp that a set point may want.'),
+        Number('max_length_m', 2000.0, 'm', 0.0, LIMITS.warp_m[1],
+               'Most warp that a set point may want.'),
         Number('max_step_m', 50.0, 'm', 0.1, 5000.0, 'Furthest that a set point may be from the '
                'counter.'),
-        Number('max_speed_m_s', 4.0, 'm/s', 0.0, 10.0, 'Fastest ship that a set point may want.'),
+        Number('max_speed_m_s', 4.0, 'm/s', 0.0, LIMITS.speed_m_s[1],
+               'Fastest ship that a set point may want.'),
         Number('max_turn_rad_s', 0.02, 'rad/s', 0.0, 0.2, 'Fastest turn that a set point may '
                'want.'),
     )  # fmt: skip
@@ -156,7 +160,7 @@ class NmeaIn(TrawlNode):
             'lines too long': str(source.too_long),
             'opened': str(source.opened),
         }
-        problems = [source.state] if source.state else []
+        problems = [text for text in (source.state, source.turned_away) if text]
         if source.lost:
             problems.append(f'{source.lost} lines came faster than they can be read')
         message = '; '.join(problems) or 'open'

@@ -14,8 +14,6 @@ from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
-from trawl_ros.model.bar_pass import add_bar_blocks
-from trawl_ros.model.compiled import is_cached
 from trawl_ros.nodes.command_watch import CommandWatch
 from trawl_ros.nodes.runtime.credit import SILENT_S, STALLED_S, Consumers
 from trawl_ros.nodes.runtime.message_classes import installed
@@ -24,7 +22,7 @@ from trawl_ros.nodes.runtime.pacer import Pacer
 from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.tow_commands import LENGTHS, SPEEDS, wanted_lengths, wanted_motion
+from trawl_ros.nodes.tow_commands import wanted_lengths, wanted_motion
 from trawl_ros.nodes.towing import (
     DEFAULT_START,
     CommandedTow,
@@ -33,6 +31,7 @@ from trawl_ros.nodes.towing import (
     fallen_sides,
 )
 from trawl_ros.records.topics import CLOCK, TRANSFORMS, TRUTH
+from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.scenario.run import Trial
@@ -61,9 +60,9 @@ class SimNode(TrawlNode):
         Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package.'),
         Text('scenario', '', 'Scenario file or name: its gear, start, commands and end are used.'),
         Flag('exit_at_end', False, 'Whether to end with the scenario.'),
-        Number('warp_length_m', DEFAULT_START[0], 'm', *LENGTHS,
+        Number('warp_length_m', DEFAULT_START[0], 'm', *LIMITS.warp_m,
                'Length of both warps at the start.'),
-        Number('speed_m_s', DEFAULT_START[1], 'm/s', *SPEEDS,
+        Number('speed_m_s', DEFAULT_START[1], 'm/s', *LIMITS.speed_m_s,
                'Speed through the water at the start.'),
         Number('heading_deg', 0.0, 'deg', -360.0, 360.0, 'First heading as ENU yaw.'),
         Number(
@@ -106,8 +105,6 @@ class SimNode(TrawlNode):
             self.advertise(TRANSFORMS.name)
         self._consumers = Consumers(self, self.parameters['wait_for'])
         self._pacer = Pacer(self.parameters['time_scale'])
-        if not is_cached(add_bar_blocks):
-            self.get_logger().info('compiles the model, once on this machine: half a minute')
         self._tow, self._period = self._prepare()
         self._problem: str | None = None
         self._paused = False
@@ -148,7 +145,7 @@ class SimNode(TrawlNode):
             'wanted starboard warp': f'{command.starboard_length:g}',
             'wanted speed': f'{command.speed:g}',
             'wanted rate of turn': f'{command.turn_rate:g}',
-            'waits for': ', '.join(missing),
+            'waits for': ', '.join([*missing, *self._consumers.waited_for()]),
             'fallen boards': fallen_sides(self._tow.simulation),
         }
         if self._scenario is not None:
@@ -169,6 +166,8 @@ class SimNode(TrawlNode):
         if stalled := self._consumers.stalled():
             names = ', '.join(stalled)
             return WARN, f'goes on without {names}, not getting on for {STALLED_S:g} s'
+        if slow := self._consumers.waited_for():
+            return WARN, f'waits for {", ".join(slow)}, which gets on too slowly'
         if fallen := fallen_sides(self._tow.simulation):
             return WARN, f'board fallen: {fallen}; towed on, expected more speed or less warp'
         if lapsed := [topic for topic, watch in self._watches.items() if watch.lapsed]:

@@ -1,5 +1,6 @@
 """However a node ends, it does so with an exit code, and with a sentence where one is due."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -39,9 +40,10 @@ sys.exit(run(Tried, sys.argv))
 def start():
     started = []
 
-    def start_node(act, *arguments):
+    def start_node(act, *arguments, **environment):
         process = subprocess.Popen(
             [sys.executable, '-c', NODE.format(act=act), *arguments],
+            env={**os.environ, **environment},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -84,6 +86,26 @@ def test_signals_end_it_cleanly_even_when_they_come_twice(start, number):
     process.send_signal(number)
     output, errors = process.communicate(timeout=20.0)
     assert (process.returncode, output, errors) == (0, 'finished\n', '')
+
+
+def test_a_node_that_compiles_answers_a_signal(start):
+    step = "__import__('trawl_ros.core.first_start', fromlist=['']).COMPILATION.step()"
+    process = start(f"print('begun', flush=True); [{step} for _ in iter(int, 1)]")
+    assert [process.stdout.readline() for _ in range(2)] == ['up\n', 'begun\n']
+    process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=20.0)
+    # The timer may be due again while it ends.
+    assert (process.returncode, output.replace('begun\n', ''), errors) == (0, 'finished\n', '')
+
+
+@pytest.mark.parametrize('home', ['/', '~', '/nowhere', ''])
+def test_a_node_needs_no_home(start, tmp_path, home):
+    # Root can write to any folder.
+    home = home if os.getuid() or home != '/' else '/proc'
+    work = {'HOME': home, 'ROS_LOG_DIR': '', 'TMPDIR': str(tmp_path)}
+    output, _ = start('self.end(0)', **work).communicate(timeout=20.0)
+    assert output == 'up\nfinished\n'
+    assert (tmp_path / f'trawl_ros-{os.getuid()}' / '.ros').is_dir()
 
 
 def test_arguments_that_mean_nothing_are_refused(start):

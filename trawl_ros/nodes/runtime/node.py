@@ -145,6 +145,9 @@ class TrawlNode(ConnectedNode):
                         callback()
             except TrawlError as reason:
                 self.end(1, str(reason))
+            except KeyboardInterrupt:
+                # Of a compilation that `run` stops: the executor would print it.
+                self.end(0)
             except Exception as reason:
                 self._note_trouble(callback.__qualname__, error_of_program(reason))
 
