@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 
 from trawl_ros.core.errors import LogError
 from trawl_ros.core.foreign import one_line, open_file, reading
+from trawl_ros.core.limits import LOG_NULS
 from trawl_ros.core.schema import Record
 
 MAX_LINE = 1_000_000
@@ -168,8 +169,12 @@ class _Lines:
     def _next(self) -> str:
         line = '\0'
         # A loss of power leaves blocks of NULs.
-        while line and not line.strip('\0'):
+        for _ in range(LOG_NULS.value // MAX_LINE):
+            if not line or line.strip('\0'):
+                break
             line = self._stream.readline(MAX_LINE)
+        else:
+            raise LogError(f'{self._path}: more than {LOG_NULS} of NULs; expected a table')
         line = line.replace('\0', '')
         self.number += bool(line)
         if len(line) == MAX_LINE:

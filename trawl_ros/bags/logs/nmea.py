@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from datetime import date
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from pynmeagps import NMEAReader
@@ -22,6 +22,7 @@ from trawl_ros.bags.logs.writing import Imported, listed, write_samples
 from trawl_ros.core.errors import LogError
 from trawl_ros.core.foreign import open_file
 from trawl_ros.core.foreign import reading as reading_file
+from trawl_ros.core.limits import LOG_NULS
 from trawl_ros.core.stamps import LOG_APART_NS, judge_stamps
 from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample
@@ -173,8 +174,7 @@ class _Listening:
         """Yield the sentences that are whole, and count what is not."""
         splitter = SentenceSplitter()
         with reading_file(self._path, LogError), open_file(self._path, LogError) as stream:
-            blocks = iter(lambda: stream.read(BLOCK_BYTES), b'')
-            pieces = chain.from_iterable(map(splitter.feed, blocks))
+            pieces = chain.from_iterable(map(splitter.feed, self._blocks(stream)))
             for piece in chain(pieces, splitter.end()):
                 self.lines = max(splitter.line, 1)
                 try:
@@ -185,6 +185,14 @@ class _Listening:
         self.lines = splitter.line
         if splitter.too_long:
             self.left[f'more than {LONGEST_LINE} bytes without a sentence'] += splitter.too_long
+
+    def _blocks(self, stream: BinaryIO) -> Iterator[bytes]:
+        nulls = 0
+        while block := stream.read(BLOCK_BYTES):
+            nulls = 0 if block.strip(b'\0') else nulls + len(block)
+            if nulls > LOG_NULS.value:
+                raise LogError(f'{self._path}: more than {LOG_NULS} of NULs; expected sentences')
+            yield block
 
     def _parse(self, frame: Frame) -> Any | None:
         if self._mapping.need_checksum and not frame.checked:
