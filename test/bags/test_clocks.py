@@ -86,6 +86,16 @@ def test_stamps_that_cannot_be_are_left_out_and_counted(tmp_path, received, fals
     assert '40 stamps are' in stream.problems[0]
 
 
+@pytest.mark.parametrize('number', [1, 2])
+def test_stamps_far_ahead_for_a_moment_are_no_clock_set_back(tmp_path, number):
+    samples = winch(ticks[:300])
+    for place in range(150, 150 + number):
+        samples[place] = replace(samples[place], stamp=ticks[place + 1000])
+    path = write(tmp_path / 'bag', samples, received=True)
+    assert 'set back' not in findings(path).get('stamp', '')
+    assert len(list(SampleStream([path], '/trawl'))) == 300
+
+
 def test_one_stamp_set_back_for_a_moment_is_no_clock_set_back(tmp_path):
     samples = winch(ticks[:300])
     samples[150] = replace(samples[150], stamp=ticks[100] + 1)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, StampArray
-from trawl_ros.core.stamps import lasting, when
+from trawl_ros.core.stamps import CONFIRM, lasting, when
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import (
     AttitudeSample,
@@ -67,6 +67,9 @@ two."""
 
 BACK_NS = 10 * SECOND
 """Stamps that go back by more than this (ns) are those of a clock that was set back."""
+
+RECENT = 2 * CONFIRM - 1
+"""Readings of which the middle one has a stamp that can be believed."""
 
 SETTLED = 10
 """Readings behind a step back from which on the clock was set, and none is stamped falsely."""
@@ -124,7 +127,10 @@ class SourceWatch:
             return
         before = self._stamps[-1]
         if stamp < before - BACK_NS:
-            self._step = self._count, before, stamp
+            # After a false stamp far ahead, readings go on from those before it.
+            recent = sorted(self._stamps[-RECENT:])
+            if stamp < recent[len(recent) // 2] - BACK_NS:
+                self._step = self._count, before, stamp
         elif self._step and stamp > self._step[1]:
             # A stamp was false, another source speaks, or all is past.
             self._step = None
