@@ -20,14 +20,13 @@ from trawl_ros.records.topics import absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 88
 START = 1_785_000_000 * SECOND
 HEADING = 'vessel/heading'
 
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 
