@@ -17,6 +17,9 @@ WORKERS := 4
 
 VENV := .venv
 BIN := $(VENV)/bin
+# uv takes 8 s where pip takes 40, but it does not read pip's configuration.
+UV = index="$${PIP_INDEX_URL:-$$($(BIN)/python -m pip config get global.index-url 2>/dev/null || true)}"; \
+    if [ -n "$$index" ]; then export UV_DEFAULT_INDEX="$$index"; fi; $(BIN)/uv
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 # Tests of what needs no steady state.
@@ -66,14 +69,14 @@ quick: $(VENV)/ready
 test: lint tests
 
 tests: $(VENV)/ready
-	@$(PYTEST) -m 'not slow'
+	@$(PYTEST) -m 'not slow' test
 
 test-slow: $(VENV)/ready
-	@$(PYTEST) -m 'slow and not report'
+	@$(PYTEST) -m 'slow and not report' test
 
 test-view: $(VENV)/ready
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
-	    --constraint requirements.lock --no-build-isolation --editable '.[view]'
+	@$(UV) pip install --quiet --python $(BIN)/python --constraint requirements.lock \
+	    --no-build-isolation --editable '.[view]'
 	@command -v chromium chromium-browser google-chrome > /dev/null || \
 	    echo 'no browser for the page: apt-get install chromium'
 	@ls /usr/share/vulkan/icd.d/*.json > /dev/null 2>&1 || \
@@ -87,7 +90,7 @@ fuzz: $(VENV)/ready
 	@PYTHONPATH=test/fuzz $(BIN)/python -m hostile --minutes $(MINUTES) --out docs/studies/fuzz.json
 
 coverage: $(VENV)/ready
-	@$(PYTEST) -m 'not slow' --cov --cov-report=term:skip-covered
+	@$(PYTEST) -m 'not slow' --cov --cov-fail-under=93 --cov-report=term:skip-covered test
 
 docs: $(VENV)/ready
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --site-dir $(SITE)
@@ -100,7 +103,7 @@ lint: $(VENV)/ready
 	@$(BIN)/lint-imports --no-cache > $(VENV)/layers.log || { cat $(VENV)/layers.log; exit 1; }
 
 lock: $(VENV)/ready
-	@$(BIN)/uv pip compile --quiet --upgrade --universal --python-version 3.10 \
+	@$(UV) pip compile --quiet --upgrade --generate-hashes --universal --python-version 3.10 \
 	    --extra ros --extra test --custom-compile-command 'make lock' \
 	    --output-file requirements.lock setup.py
 	@echo 'requirements.lock is written; the next make installs it'
@@ -119,18 +122,18 @@ $(VENV)/ready: $(VENV)/locked setup.py setup.cfg pyproject.toml
 	@$(BIN)/python test/tools/compile_loops.py
 	@touch $@
 
-# uv takes 8 s where pip takes 40, but it does not read pip's configuration; where it cannot
-# reach the package index, pip gets its turn.
+# What comes is held to the hashes in the lock, by uv and by pip, which gets its turn where uv cannot
+# reach the package index.
 $(VENV)/locked: requirements.lock | $(VENV)/bin/python
 	@echo ".venv: $$(grep -c == requirements.lock) pinned packages (the longest step, 10 to 60 s)"
+	@sed -n '/^uv==/,/^[^ ]/{/^uv==\|^ /p}' requirements.lock > $(VENV)/uv.lock
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
-	    --constraint requirements.lock uv
-	@index="$${PIP_INDEX_URL:-$$($(BIN)/python -m pip config get global.index-url 2>/dev/null || true)}"; \
-	if [ -n "$$index" ]; then export UV_DEFAULT_INDEX="$$index"; fi; \
-	$(BIN)/uv pip install --quiet --python $(BIN)/python --requirement requirements.lock || { \
+	    --require-hashes --requirement $(VENV)/uv.lock
+	@$(UV) pip install --quiet --python $(BIN)/python --require-hashes \
+	    --requirement requirements.lock || { \
 	    echo '.venv: uv failed, trying pip'; \
 	    $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-input \
-	        --requirement requirements.lock; }
+	        --require-hashes --requirement requirements.lock; }
 	@touch $@
 
 $(VENV)/bin/python:

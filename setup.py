@@ -26,6 +26,35 @@ NODES = (
     'view_node',
 )
 
+# What a full ROS 2 (Ubuntu 24.04) gives by the rosdep keys that package.xml names.
+BY_ROSDEP = {
+    'click>=8.1,<9': 'python3-click',
+    'matplotlib>=3.6,<4': 'python3-matplotlib',
+    'numpy>=1.26,<3': 'python3-numpy',
+    'psutil>=5.9,<8': 'python3-psutil',
+    'PyYAML>=6,<7': 'python3-yaml',
+    'rich>=13,<16': 'python3-rich',
+    'scipy>=1.11,<2': 'python3-scipy',
+}
+
+# What has no rosdep key, or is too old there: the README's line of pip, which tests hold to this.
+# Lower bounds exclude versions with published holes.
+BY_PIP = [
+    'cryptography>=42.0.4,<60',
+    'dask>=2024.8,<2027',
+    'distributed>=2024.8,<2027',
+    'google-re2>=1.1.20240702,<2',
+    'gsw>=3.6,<4',
+    'jinja2>=3.1.6,<4',
+    'lz4>=4,<5',
+    'mcap>=1.6,<1.7',
+    'numba>=0.60,<1',
+    'pydantic>=2.7,<3',
+    'pynmeagps>=1.1,<2',
+    'rosbags>=0.11.9,<0.12',
+    'zstandard>=0.22,<1',
+]
+
 # ROS 2 itself, for machines that do not have it. It is an extra because a machine with a full
 # ROS 2 brings rclpy and the message packages along, and a second copy of them from the package
 # index would hide the one that the rest of that machine was built against.
@@ -65,10 +94,9 @@ TEST = [
     'pytest-xdist>=3.6,<4',
     'ruff>=0.8,<1',
     # setup.py is still run as a command by colcon, which setuptools 80 gave up.
-    'setuptools>=64,<80',
+    'setuptools>=78.1.1,<80',
     'types-PyYAML>=6,<7',
     'uv>=0.5,<1',
-    'websockets>=13,<18',
 ]
 
 # The site of `make docs`; tests build it, since a warning fails it.
@@ -85,9 +113,9 @@ PEERS = [
     'trawlkit>=1.1,<1.2; python_version >= "3.11"',
 ]
 
-# For people who look on, of whom aboard there are none: wheels of 19 and of 170 MB. Tests that need
-# the larger one are skipped without it.
-FOXGLOVE = ['foxglove-sdk>=0.30.3,<0.31']
+# For people who look on, of whom aboard there are none: a small library and one of 170 MB.
+# Tests that need the larger one are skipped without it.
+FOXGLOVE = ['websockets>=14,<18']
 VIEW = [*FOXGLOVE, 'rerun-sdk>=0.39,<0.42']
 
 
@@ -117,27 +145,7 @@ setup(
         *tree('bags'),
         *tree('launch'),
     ],
-    install_requires=[
-        'click>=8.1,<9',
-        'cryptography>=41,<60',
-        'dask>=2024.8,<2027',
-        'distributed>=2024.8,<2027',
-        'gsw>=3.6,<4',
-        'jinja2>=3.1,<4',
-        'lz4>=4,<5',
-        'matplotlib>=3.6,<4',
-        'mcap>=1.6,<1.7',
-        'numba>=0.60,<1',
-        'numpy>=1.26,<3',
-        'psutil>=5.9,<8',
-        'pydantic>=2.7,<3',
-        'pynmeagps>=1.1,<2',
-        'PyYAML>=6,<7',
-        'rich>=13,<16',
-        'rosbags>=0.11.9,<0.12',
-        'scipy>=1.11,<2',
-        'zstandard>=0.22,<1',
-    ],
+    install_requires=[*BY_ROSDEP, *BY_PIP],
     extras_require={
         'ros': ROS,
         'view': VIEW,
@@ -147,7 +155,7 @@ setup(
     },
     entry_points={
         'console_scripts': [
-            *(f'{node} = {PACKAGE}.nodes.{node}:main' for node in NODES),
+            *(f'{node} = {PACKAGE}.nodes.starting:{node}' for node in NODES),
             f'trawl = {PACKAGE}.cli.main:main',
         ],
     },

@@ -16,6 +16,7 @@ from trawl_ros.core.files import write_figure
 from trawl_ros.core.resources import share_path
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.model.gear_model import GearModel, build_model
@@ -43,10 +44,25 @@ LEGS = ((200.0, 2.3), (220.0, 2.3))
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Leave slow tests out where nothing is asked for, as by `colcon test`."""
+    if config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.markexpr:
+        config.option.markexpr = 'not slow'
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Files with slow tests come first: one that begins last would leave a worker idle."""
     slow = {item.path for item in items if item.get_closest_marker('slow')}
     items.sort(key=lambda item: item.path not in slow)
+
+
+@pytest.fixture(scope='session', autouse=True)
+def own_domain(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Lease a ROS domain for what this process starts: other suites are not to hear it."""
+    with own_graph(tmp_path_factory.mktemp('log')) as graph, pytest.MonkeyPatch.context() as patch:
+        for name, value in graph.items():
+            patch.setenv(name, value)
+        yield
 
 
 @contextmanager

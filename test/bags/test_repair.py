@@ -266,11 +266,10 @@ def test_nothing_is_written_over(bag_path, mcap_path):
     [
         (lambda bag: cut(bag / 'trial_0.mcap', 40), 'nothing can be saved'),
         (lambda bag: (bag / 'trial_0.mcap').write_bytes(b''), 'no MCAP file that can be read'),
-        (lambda bag: edit(bag, lambda data: data.update(storage_identifier='sqlite3')), 'sqlite3'),
         (lambda bag: edit(bag, lambda data: data.update(compression_mode='FILE')), 'unpack them'),
         (shutil.rmtree, 'no such bag'),
     ],
-    ids=['header only', 'empty file', 'database', 'compressed files', 'no bag'],
+    ids=['header only', 'empty file', 'compressed files', 'no bag'],
 )
 def test_what_cannot_be_repaired_is_an_error_and_leaves_nothing(bag_path, spoil, words):
     spoil(bag_path)

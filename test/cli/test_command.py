@@ -48,3 +48,14 @@ def test_scenarios_are_listed_with_what_they_are_for(run):
     assert done.exit_code == 0
     assert 'demo' in done.stdout
     assert 'steady states' in done.stdout
+
+
+@pytest.mark.parametrize('code', ['0', ''])
+def test_foreign_code_that_leaves_does_not_end_a_command_as_done(run, monkeypatch, code):
+    def leave(*_):
+        sys.exit(*map(int, code))
+
+    monkeypatch.setattr('trawl_ros.cli.effects.catalogue', leave)
+    done = run('effects')
+    assert done.exit_code == 1
+    assert 'another package' in done.output

@@ -89,7 +89,7 @@ def test_a_missing_scenario_is_named(run, tmp_path):
     done = run('tow', tmp_path / 'none.yaml', '--out', tmp_path / 'bag')
     assert done.exit_code == 1
     assert f'{tmp_path / "none.yaml"}: no such file' in done.stderr
-    assert 'demo.yaml' in run('tow', 'dmeo', '--out', tmp_path / 'bag').stderr
+    assert 'did you mean demo?' in run('tow', 'dmeo', '--out', tmp_path / 'bag').stderr
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])

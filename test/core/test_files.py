@@ -2,6 +2,7 @@
 
 import errno
 import json
+import os
 import resource
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from trawl_ros.core.errors import BagError, TrawlError
 from trawl_ros.core.files import (
     appending,
     empty_folder,
+    is_there,
     made_folder,
     new_folder,
     write_json,
@@ -118,3 +120,14 @@ def test_a_full_disk_is_told_before_the_work(tmp_path: Path) -> None:
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_continued_is_a_file_or_new(tmp_path: Path) -> None:
+    (tmp_path / 'file').touch()
+    assert is_there(tmp_path / 'file', TrawlError)
+    assert not is_there(tmp_path / 'new', TrawlError)
+    (tmp_path / 'link').symlink_to('nowhere')
+    os.mkfifo(tmp_path / 'pipe')
+    for path in (tmp_path, tmp_path / 'link', tmp_path / 'pipe', Path('/dev/null')):
+        with pytest.raises(TrawlError, match='expected a file or a new path'):
+            is_there(path, TrawlError)

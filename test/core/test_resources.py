@@ -120,3 +120,10 @@ def test_files_of_the_package_are_named_alike(load, known, error, tmp_path, monk
     load(known)
     with pytest.raises(error, match=r'^nonesuch: neither a file nor a name .*there are: '):
         load('nonesuch')
+
+
+@pytest.mark.parametrize('name', ['shakedwn', 'shake_down', 'demoo'])
+def test_a_name_that_is_nearly_one_of_them_is_answered_with_that_one(name):
+    known = 'demo' if name.startswith('demo') else 'shakedown'
+    with pytest.raises(ScenarioError, match=f'did you mean {known}\\?$'):
+        load_scenario(name)

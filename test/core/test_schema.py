@@ -156,7 +156,7 @@ def test_a_wrong_value_is_named_with_key_and_expectation(
         ('a: !!bool abc', 'found a tag'),
         ('? !!str [a]', 'found a tag'),
         ('a: ! b', 'found a tag'),
-        ('a: "\\ud800"', 'found half a character'),
+        ('a: "\\ud800"', 'control character or half'),
         ('a: "\\U00110000"', 'expected a sound file'),
         (f'a: [{"1," * 300_000}]', 'found one value more, expected 20000 values at most'),
         ('a: -2.5e+300', 'found -2.5e+300, expected a number of magnitude 1e+18 at most'),
@@ -234,3 +234,26 @@ def test_a_check_across_keys_is_placed_where_it_belongs(low: float, sentence: st
 )
 def test_the_end_of_a_key_states_its_unit(key: str, unit: str | None) -> None:
     assert key_unit(key) == unit
+
+
+@pytest.mark.parametrize('sign', ['\\e[2J', '\\x07', '\\x9b', '\\u202e', '\\ud800', '\\0'])
+def test_control_characters_are_refused(tmp_path, sign):
+    path = tmp_path / 'gear.yaml'
+    path.write_text(f'name: "mine {sign}"\n')
+    with pytest.raises(GearError, match='control character') as refusal:
+        load_yaml(path, GearError)
+    assert str(refusal.value).isprintable()
+
+
+def test_a_complaint_does_not_repeat_a_whole_file():
+    class Named(Record):
+        name: str
+
+        @model_validator(mode='after')
+        def _refuse(self) -> 'Named':
+            raise ValueError(f'name: found {self.name}, expected another')
+
+    for data in ({'name': 'x' * 100_000}, {'name': 'x', 'y' * 100_000: 1}):
+        with pytest.raises(GearError) as refusal:
+            validated(Named, data, 'gear.yaml', GearError)
+        assert len(str(refusal.value)) < 3000

@@ -1,5 +1,6 @@
 """The catalogue is complete, takes effects of others, and gear files are held to it."""
 
+import sys
 from types import SimpleNamespace
 
 import pytest
@@ -70,6 +71,9 @@ def test_what_other_packages_get_wrong_is_told(points):
 
     points.append(point('broken', broken))
     with pytest.raises(TrawlError, match='entry point broken = package:broken: cannot be loaded'):
+        catalogue()
+    points[:] = [point('leaving', lambda: sys.exit(0))]
+    with pytest.raises(TrawlError, match='entry point leaving'):
         catalogue()
     points[:] = [point('number', lambda: 3)]
     with pytest.raises(TrawlError, match='found a int, expected an Effect'):

@@ -124,6 +124,32 @@ FAULTS = [
         ),
         'bridles: found upper 60 m, lower 100 m',
     ),
+    (
+        'kaifuha',
+        lambda d: d['warp'].update(weight_in_water_n_m=2.8),
+        'warp.weight_in_water_n_m: found 2.8 N/m for a rope as stiff as a wire of 32 mm, expected '
+        'about 31.7 N/m (2.8 kg/m would be 27.5 N/m)',
+    ),
+    (
+        'krill_800',
+        lambda d: d['bridle'].update(weight_in_water_n_m=0.8),
+        'bridle.weight_in_water_n_m: found 0.8 N/m for a rope as stiff as a wire of 16 mm',
+    ),
+    (
+        'kaifuha',
+        lambda d: d['warp'].update(weight_in_water_n_m=-5.0),
+        'found -5 N/m, which lifts more than any fibre of 32 mm does',
+    ),
+    (
+        'pair_368',
+        lambda d: d['warp'].update(weight_in_water_n_m=-5.0),
+        'found -5 N/m, which lifts more than any fibre of 12 mm does',
+    ),
+    (
+        'kaifuha',
+        lambda d: d['bridle'].update(length_m=2000.0),
+        'found 2000 m, expected at most 1000 m',
+    ),
 ]
 
 
@@ -213,6 +239,7 @@ def test_a_table_becomes_a_plan_that_reads_back_the_same(tmp_path: Path, mark: s
         (GOOD.replace('wing;upper', 'flap;upper'), "line 3: part: found 'flap'"),
         (GOOD.replace('codend;all', 'body;all'), 'found no codend'),
         (GOOD.replace('body;lower', 'body;"lower'), 'found no table'),
+        (GOOD.replace('body;lower', 'body;lo\x1b[2Jwer'), 'a control character'),
     ],
 )
 def test_a_table_that_is_no_plan_is_refused_with_its_line(
@@ -221,6 +248,15 @@ def test_a_table_that_is_no_plan_is_refused_with_its_line(
     with pytest.raises(GearError) as caught:
         read_plan(table_of(tmp_path, text))
     assert part in str(caught.value)
+
+
+def test_a_huge_table_and_a_device_are_refused_at_once(tmp_path: Path) -> None:
+    huge = tmp_path / 'huge.csv'
+    with huge.open('wb') as file:
+        file.truncate(10**10)
+    for path in (huge, Path('/dev/zero'), tmp_path):
+        with pytest.raises(GearError, match='expected a'):
+            read_plan(path)
 
 
 def test_doors_are_listed_with_their_sources() -> None:

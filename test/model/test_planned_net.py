@@ -353,6 +353,7 @@ def test_a_cutting_rate_stands_for_a_missing_count(tmp_path: Path) -> None:
             lambda p: p[5].update(long_meshes=40),
             "panels of section '800 mm' are 20 to 32 m long, expected one length",
         ),
+        (lambda p: p[-1].update(front_meshes=0), 'has 0 front_meshes in all its panels'),
         (lambda p: p[0].update(material='cotton'), "found 'cotton', expected 'PA'"),
         (
             lambda p: p[0].update(orientation='ropes'),

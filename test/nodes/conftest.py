@@ -12,6 +12,7 @@ import pytest
 import yaml
 
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.lab.running.own_graph import own_graph
 
 # Before rclpy is loaded: nobody outside of this machine is to hear these nodes.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
@@ -41,15 +42,17 @@ steps:
 
 
 class Graph:
-    """Nodes that share one executor."""
+    """Nodes that share one executor; `environment` puts a process into the same graph."""
 
-    def __init__(self, domain: int) -> None:
+    def __init__(self, environment: dict[str, str], make_executor: Callable | None) -> None:
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
 
+        self.environment = environment
         self.context = rclpy.Context()
+        domain = int(environment['ROS_DOMAIN_ID'])
         rclpy.init(args=[], context=self.context, domain_id=domain)
-        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor = (make_executor or SingleThreadedExecutor)(context=self.context)
 
     def add(self, kind: Callable, **parameters: object):
         """Create a node of a class with parameters, and let it spin with the others."""
@@ -104,19 +107,10 @@ class Graph:
         return future.result()
 
     def close(self) -> None:
-        for node in self.executor.get_nodes():
+        for node in list(self.executor.get_nodes()):
             self.remove(node)
         self.executor.shutdown()
         self.context.try_shutdown()
-
-
-@contextmanager
-def graph_in(domain: int) -> Iterator[Graph]:
-    graph = Graph(domain)
-    try:
-        yield graph
-    finally:
-        graph.close()
 
 
 @pytest.fixture(scope='session', autouse=True)
@@ -132,7 +126,7 @@ def no_viewer() -> Iterator[None]:
         put=lambda record: None, close=lambda: None,
     )  # fmt: skip
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(view_node, 'open_view', lambda parameters: nothing)
+        patch.setattr(view_node, 'open_view', lambda parameters, output: nothing)
         yield
 
 
@@ -142,9 +136,19 @@ def pictures(rough_pictures_of_all: None) -> None:
 
 
 @pytest.fixture(scope='session')
-def open_graph():
-    """Give the context manager that makes a graph in a domain."""
-    return graph_in
+def open_graph(tmp_path_factory: pytest.TempPathFactory):
+    """Give the context manager that makes a graph in a domain of its own."""
+
+    @contextmanager
+    def opened(make_executor: Callable | None = None) -> Iterator[Graph]:
+        with own_graph(tmp_path_factory.mktemp('log')) as environment:
+            graph = Graph(environment, make_executor)
+            try:
+                yield graph
+            finally:
+                graph.close()
+
+    return opened
 
 
 @pytest.fixture(scope='session')
@@ -169,12 +173,12 @@ def estimate_listener():
     """Give the class of a node that looks at what the identification says."""
     from trawl_ros.messages.diagnostics import read_statuses
     from trawl_ros.messages.estimates import read_covariance, read_estimate, read_innovations
-    from trawl_ros.nodes.playback.recorded_qos import matching
+    from trawl_ros.nodes.graph.matching_qos import with_history
     from trawl_ros.nodes.runtime.node import TrawlNode
     from trawl_ros.nodes.runtime.qos import CONSUMER
 
     # Latched, and all that comes: two windows may be dealt with before it is its turn.
-    latched = matching((), CONSUMER)
+    latched = with_history(CONSUMER)
 
     class EstimateListener(TrawlNode):
         def __init__(self, name='listener', **kwargs):

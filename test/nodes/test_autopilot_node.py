@@ -26,7 +26,6 @@ from trawl_ros.records.samples import HeadingSample, VelocitySample  # noqa: E40
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 218
 STATUS = '/trawl/autopilot_node: autopilot'
 
 
@@ -68,7 +67,7 @@ def heading_deg(odometry):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

@@ -22,7 +22,6 @@ from trawl_ros.records.samples import WinchSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 217
 STATUS = '/trawl/autotrawl_node: autotrawl'
 
 
@@ -52,7 +51,7 @@ class Winches(TrawlNode):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

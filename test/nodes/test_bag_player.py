@@ -29,7 +29,6 @@ from trawl_ros.records.topics import absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 89
 START = 1_785_000_000
 COUNT = 20
 HZ = 10
@@ -62,7 +61,7 @@ def bag(tmp_path):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

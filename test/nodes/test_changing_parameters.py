@@ -25,8 +25,6 @@ from trawl_ros.records.topics import absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 101
-
 
 def executables():
     """The class of each node that has a command of its own."""
@@ -54,7 +52,7 @@ def bag(tmp_path_factory):
 
 @pytest.fixture(scope='module')
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

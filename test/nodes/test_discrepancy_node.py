@@ -20,8 +20,6 @@ from trawl_ros.records.samples import WinchSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 97
-
 
 class Listener(TrawlNode):
     """Hears findings."""
@@ -40,7 +38,7 @@ class Listener(TrawlNode):
 def test_cells_that_show_too_much_are_found_while_the_tows_go_on(
     open_graph, tight_tows, coarse_gear, tmp_path
 ):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         node = graph.add(
             DiscrepancyNode, gear=str(coarse_gear), output=str(tmp_path / 'report'),
             baseline_tows=1, settle_s=10.0, settle_passages=0.0, window_s=20.0,
@@ -79,7 +77,7 @@ def test_two_sources_that_one_publisher_passes_on_are_told_and_not_used(open_gra
         for rate, factor in ((10, 1.0), (3, 1.15))
         for time in (number / rate for number in range(8 * rate))
     ]
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         node = graph.add(DiscrepancyNode, gear=str(coarse_gear))
         source = graph.add(partial(TrawlNode, 'source'))
         source.advertise(topic)

@@ -18,7 +18,6 @@ from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 93
 COUNTER = 'winch/joint_states/port/length'
 READINGS = 'winch/joint_states'
 
@@ -47,7 +46,7 @@ class Engineer(TrawlNode):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

@@ -13,17 +13,19 @@ import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
-pytest.importorskip('foxglove', reason='needs foxglove-sdk, from the extra `view`')
+pytest.importorskip('websockets', reason='needs websockets, from the extra `view`')
 
-from websockets.exceptions import ConnectionClosed  # noqa: E402
+from websockets.exceptions import ConnectionClosed, InvalidStatus  # noqa: E402
 from websockets.sync.client import connect  # noqa: E402
 
+from trawl_ros.core.limits import Limit  # noqa: E402
 from trawl_ros.core.resources import share_path  # noqa: E402
 from trawl_ros.messages.cdr import serialize  # noqa: E402
 from trawl_ros.messages.diagnostics import read_statuses  # noqa: E402
 from trawl_ros.messages.estimates import ESTIMATE, estimate_message  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.foxglove_node import FoxgloveNode, main  # noqa: E402
+from trawl_ros.nodes.links import websocket  # noqa: E402
 from trawl_ros.nodes.runtime.message_classes import installed  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
@@ -32,7 +34,6 @@ from trawl_ros.records.topics import TOPICS, absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 227
 LOCAL = '127.0.0.1'
 PROTOCOL = 'foxglove.sdk.v1'
 BACKLOG = 20
@@ -94,7 +95,7 @@ class Viewer:
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 
@@ -264,6 +265,63 @@ def test_nonsense_does_no_harm_and_nobody_may_command(graph, look, ship, node, p
     assert node.exit_code is None
 
 
+@pytest.mark.parametrize(
+    ('origin', 'host'),
+    [
+        ('https://evil.example', None),
+        ('http://localhost.evil.example', None),
+        ('https://app.foxglove.dev.evil.example', None),
+        ('null', None),
+        ('', None),
+        ('http://[', None),
+        (None, 'evil.example'),
+        ('http://localhost:8080', 'evil.example:8765'),
+        (None, '127.0.0.1.evil.example'),
+        (None, ''),
+    ],
+)
+def test_pages_of_the_web_are_refused(graph, node, port, origin, host):
+    lines = [f'Host: {host if host is not None else f"{LOCAL}:{port}"}']
+    lines += [] if origin is None else [f'Origin: {origin}']
+    assert b' 403 ' in _answer(port, lines)
+    assert node.statuses()[0].values['last refused']
+
+
+@pytest.mark.parametrize(
+    ('origin', 'host'),
+    [
+        ('http://localhost:8080', 'localhost'),
+        ('http://127.0.0.1', '127.0.0.1'),
+        ('http://[::1]:8080', '192.168.7.5:8765'),
+        ('https://app.foxglove.dev', '[::1]:8765'),
+        ('file://', socket.gethostname()),
+        (None, LOCAL),
+    ],
+)
+def test_viewers_of_this_machine_may_connect(node, port, origin, host):
+    lines = [f'Host: {host}'] + ([] if origin is None else [f'Origin: {origin}'])
+    assert b' 101 ' in _answer(port, lines)
+
+
+def _answer(port, lines):
+    """First line of the answer to a handshake with these headers."""
+    lines = [
+        'GET / HTTP/1.1', *lines, 'Upgrade: websocket', 'Connection: Upgrade',
+        'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==', 'Sec-WebSocket-Version: 13',
+        f'Sec-WebSocket-Protocol: {PROTOCOL}', '', '',
+    ]  # fmt: skip
+    with socket.create_connection((LOCAL, port), 5.0) as line:
+        line.sendall('\r\n'.join(lines).encode())
+        return line.recv(1000).split(b'\r\n')[0] + b' '
+
+
+def test_viewers_are_no_more_than_allowed(monkeypatch, look, node, port):
+    monkeypatch.setattr(websocket, 'VIEWERS', Limit(2, '', ''))
+    look(), look()
+    with pytest.raises(InvalidStatus, match='403'):
+        joined(port)
+
+
 def test_a_viewer_that_stands_still_holds_up_nobody_and_costs_bounded_memory(
     graph, look, ship, node, port
 ):
@@ -282,6 +340,8 @@ def test_a_viewer_that_stands_still_holds_up_nobody_and_costs_bounded_memory(
             ship.send_bytes(image, blank)
             ship.send(WINCH, winches(second))
             graph.until(lambda second=second: node._passed[WINCH] == node._passed[image] == second)
+            # The other viewer loses none: it gets as much of the processor as it needs.
+            graph.until(lambda least=second - BACKLOG // 2: len(viewer.of(WINCH)) > least)
         graph.until(lambda: len(viewer.of(WINCH)) == 150)
         grown = psutil.Process().memory_info().rss - before
         # All of them are 60 MB; besides those that may wait some lie in the line's own buffers.
@@ -321,7 +381,7 @@ def test_where_it_cannot_listen_is_told_and_ends_the_node(host, reason, port, ca
 
 
 def test_without_its_library_it_says_what_to_install(monkeypatch, capfd):
-    monkeypatch.setitem(sys.modules, 'foxglove', None)
+    monkeypatch.setitem(sys.modules, 'websockets.asyncio.server', None)
     monkeypatch.delitem(sys.modules, 'trawl_ros.nodes.links.websocket', raising=False)
     assert main(['/somewhere/foxglove_node']) == 1
     assert "pip install 'trawl_ros[view]'" in capfd.readouterr().err

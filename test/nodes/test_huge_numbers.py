@@ -16,12 +16,11 @@ from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 from trawl_ros.records.samples import VelocitySample  # noqa: E402
 
 pytestmark = pytest.mark.ros
-DOMAIN = 219
 
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

@@ -15,7 +15,6 @@ from trawl_ros.records.samples import PressureSample, RangeSample, WinchSample  
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 114
 LEG_S = 48
 """Twice this is what it takes to give up waiting for a channel that has died."""
 LATEST = 100_000 * SECOND
@@ -73,7 +72,7 @@ class Sea:
 
 @pytest.fixture(scope='module')
 def sea(open_graph, estimate_listener, coarse_gear):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         sea = Sea(graph, estimate_listener, coarse_gear)
         yield sea
         sea.node._worker.reset()

@@ -23,7 +23,6 @@ from trawl_ros.records.topics import NAMESPACE  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 102
 START = 1000 * SECOND
 MINUTES = 12
 NODE = ['identification_node']
@@ -70,7 +69,7 @@ def expected(bag, coarse_gear):
 @pytest.fixture
 def replay(open_graph, estimate_listener, coarse_gear):
     """Give a function that starts the node, and plays bags to it one after another."""
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
 
         def start(*plays, **parameters):
             node = graph.add(IdentificationNode, gear=str(coarse_gear), advise=False, **parameters)

@@ -12,7 +12,6 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 from trawl_ros.bags.logs.import_log import import_log  # noqa: E402
 from trawl_ros.bags.writer import BagWriter  # noqa: E402
-from trawl_ros.core.errors import TrawlError  # noqa: E402
 from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.instruments.errors.instrument import SeedPlan  # noqa: E402
 from trawl_ros.instruments.parameters import load_instruments  # noqa: E402
@@ -30,7 +29,6 @@ from trawl_ros.simulation.simulation import Simulation  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 84
 ROOT = Path(__file__).parents[2]
 HAUL_LOG = ROOT.parent / 'shared/data/noaa_trawlmetrics/gear_testing_2026_haul_log.csv'
 HAUL_MAPPING = ROOT / 'config/logs/door_test_haul_log.yaml'
@@ -64,7 +62,7 @@ def session(open_graph, steady_bag, gear_path, estimate_listener, tmp_path_facto
     class Session:
         output = tmp_path_factory.mktemp('identified') / 'results'
 
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         node = graph.add(
             IdentificationNode,
             gear=str(gear_path),
@@ -174,13 +172,6 @@ def test_stamps_that_go_back_start_it_anew(session):
     assert session.last_status.values['revision'] == '1'
 
 
-def test_results_of_an_earlier_run_are_not_written_over(open_graph, tmp_path):
-    (tmp_path / 'identification.json').write_text('{}')
-    with open_graph(DOMAIN + 1) as graph, pytest.raises(TrawlError, match='not written over'):
-        graph.add(IdentificationNode, output=str(tmp_path))
-    assert (tmp_path / 'identification.json').read_text() == '{}'
-
-
 def test_measurements_at_sea_without_speed_and_spread_are_not_enough(
     open_graph, estimate_listener, tmp_path
 ):
@@ -188,7 +179,7 @@ def test_measurements_at_sea_without_speed_and_spread_are_not_enough(
         pytest.skip(f'the measured log is not here: {HAUL_LOG.name}')
     bag = tmp_path / 'hauls'
     import_log(HAUL_LOG, HAUL_MAPPING, bag)
-    with open_graph(DOMAIN + 1) as graph:
+    with open_graph() as graph:
         graph.add(IdentificationNode)
         listener = graph.add(estimate_listener)
         player = graph.add(BagPlayer, bag=str(bag), rate=0.0, wait_for=['identification_node'])

@@ -26,7 +26,6 @@ from trawl_ros.records.topics import absolute  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 113
 START = 1000 * SECOND
 LEG_S = 60
 RULES = {'settle_s': 10.0, 'settle_passages': 0.0, 'window_s': 20.0}
@@ -89,7 +88,7 @@ class Replay:
 
 @pytest.fixture
 def replay(open_graph, estimate_listener, coarse_gear):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         made = []
 
         def make(**parameters):
@@ -196,8 +195,7 @@ def test_a_node_ended_in_mid_tow_goes_on_where_it_was(replay, bag, offline, tmp_
 def test_a_node_that_is_killed_goes_on_after_its_last_window(replay, bag, offline, tmp_path):
     played = replay(state=str(tmp_path / 'state'))
     graph, listener = played.graph, played.listener
-    environment = {'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(tmp_path)}
-    with Processes(tmp_path / 'log', environment) as processes:
+    with Processes(tmp_path / 'log', graph.environment) as processes:
         processes.start('identification_node', **played.parameters)
         player = graph.add(BagPlayer, bag=str(bag), rate=0.0, wait_for=NODE, lead_s=1.0)
         second = START + 50 * SECOND
@@ -215,7 +213,9 @@ def test_a_node_that_is_killed_goes_on_after_its_last_window(replay, bag, offlin
     node = played.node()
     graph.until(lambda: len(listener.covariances) > 2)
     heard = [
-        node._listeners[topic][0] for topic in player.subscribers() if topic in node._listeners
+        node._listeners[topic].subscription
+        for topic in player.subscribers()
+        if topic in node._listeners
     ]
     graph.until(lambda: all(one.get_publisher_count() for one in heard))
     graph.settle(1.0)

@@ -14,8 +14,9 @@ from trawl_ros.messages.cdr import STORE, serialize
 from trawl_ros.messages.commands import winch_command
 from trawl_ros.messages.stamps import header
 from trawl_ros.messages.truth_to_messages import clock_message
-from trawl_ros.nodes.runtime.incoming import Incoming, Leaps, believing_clock, decoding
-from trawl_ros.nodes.runtime.source import Source
+from trawl_ros.nodes.graph.source import Source
+from trawl_ros.nodes.runtime.incoming import Incoming, believing_clock, decoding
+from trawl_ros.nodes.runtime.turns import Turns
 
 JOINTS = 'sensor_msgs/msg/JointState'
 WINCH = 'winch/joint_states'
@@ -40,7 +41,7 @@ def test_an_unforeseen_error_is_refused_with_its_place_in_one_line():
     def use(message):
         raise ZeroDivisionError('nothing\nto divide by' * 10_000)
 
-    Incoming(WINCH, use, said.append, print, Source(lambda: 1), single=True)(b'', numbered(1))
+    Incoming(WINCH, use, said.append, print, Source(lambda: 1), True, Turns())(b'', numbered(1))
     (sentence,) = said
     assert sentence.startswith(f'{WINCH}: an error of the program in ')
     assert 'ZeroDivisionError: nothing' in sentence
@@ -53,7 +54,7 @@ def test_an_error_with_which_the_node_cannot_do_its_work_ends_it():
         raise TrawlError('no space left')
 
     ended = []
-    Incoming(WINCH, use, print, ended.append, Source(lambda: 1), single=True)((b'', numbered(1)))
+    Incoming(WINCH, use, print, ended.append, Source(lambda: 1), True, Turns())((b'', numbered(1)))
     assert ended == ['no space left']
 
 
@@ -74,17 +75,6 @@ def test_an_error_in_what_a_message_asks_for_is_the_messages():
 
     with pytest.raises(MessageError, match='no track'):
         decoding(WINCH, JOINTS, use)(serialize(winch_command(1, 2.0, 3.0)[1]))
-
-
-def test_three_stamps_far_from_the_last_are_believed_and_fewer_are_not():
-    leaps = Leaps()
-    far = 2_147_483_647 * SECOND
-    assert leaps.take(100 * SECOND, 'a') == (['a'], 0)
-    assert leaps.take(far, 'false') == ([], 0)
-    assert leaps.take(101 * SECOND, 'b') == (['b'], 1)
-    for stamp, message in ((5, 'c'), (6, 'd')):
-        assert leaps.take(stamp * SECOND, message) == ([], 0)
-    assert leaps.take(7 * SECOND, 'e') == (['c', 'd', 'e'], 0)
 
 
 @pytest.mark.parametrize('second', [-5, 2_147_483_647])
@@ -164,7 +154,7 @@ def pair(open_graph):
         heard.append(message)
 
     heard = []
-    with open_graph(113) as graph:
+    with open_graph() as graph:
         talker = graph.add(lambda **kwargs: TrawlNode('talker', **kwargs))
         ear = graph.add(lambda **kwargs: TrawlNode('ear', **kwargs), use_sim_time=True)
         ear.listen(WINCH, use, CONSUMER)

@@ -15,7 +15,6 @@ from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 104
 TIME_SCALE = 5.0
 WATCHED = {
     'sim_node': 'truth/winch',
@@ -119,12 +118,7 @@ class Tow:
 @contextmanager
 def towing(open_graph, gear_path, folder, nodes):
     """Nodes that tow, as processes."""
-    environment = {
-        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
-        'ROS_DOMAIN_ID': str(DOMAIN),
-        'ROS_LOG_DIR': str(folder),
-    }
-    with open_graph(DOMAIN) as graph, Processes(folder / 'log', environment) as processes:
+    with open_graph() as graph, Processes(folder / 'log', graph.environment) as processes:
         tow = Tow(graph, processes, folder, gear_path, nodes)
         tow.all_go_on()
         yield tow

@@ -32,7 +32,6 @@ from trawl_ros.sentences.table import COMMANDS, load_table  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 222
 TOPICS = (
     'winch/joint_states',
     'door/port/pressure',
@@ -78,7 +77,7 @@ class Ship(TrawlNode):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 
@@ -235,6 +234,26 @@ def test_each_link_goes_by_its_own_clock(graph, ship, port):
     noon = 1_785_585_600 * SECOND
     hours = {topic: (stamp - noon) // SECOND for topic, stamp in ship.samples}
     assert hours == {'door/spread': 0, 'winch/joint_states': 3600}
+
+
+def test_a_time_that_cannot_be_costs_its_line_and_no_other(graph, ship, port):
+    heard(graph, links=[f'udp://:{port}'], systems=['marport', 'ship'], time='sentences')
+    opened(graph, ship, f'udp://:{port}')
+    say(
+        port,
+        'GPZDA,120000.00,01,08,2026,00,00',
+        b'\\c:9999999999*59\\' + framed('$', 'MPMSD,T,PD,23,XST,m,84.1', checksum=True).encode(),
+        'GPZDA,120000.00,31,12,9999,00,00',
+        'GPZDA,120000.00,31,12,2036,00,00',
+        'GPZDA,120000.00,05,05,2005,00,00',
+        # Two sentences in one datagram are two.
+        framed('$', 'GPZDA,120001.00,01,08,2026,00,00', checksum=True).encode()
+        + framed('$', 'MPMSD,T,PD,23,XST,m,84.5', checksum=True).encode(),
+    )
+    graph.until(lambda: ship.samples)
+    ((topic, stamp),) = ship.samples
+    assert (topic, stamp // SECOND) == ('door/spread', 1_785_585_601)
+    graph.until(lambda: ship.report('sentences').values.get('not understood') == '4')
 
 
 def test_set_points_drive_the_winches_within_limits_and_hold_when_they_cease(graph, ship, port):

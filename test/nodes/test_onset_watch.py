@@ -27,7 +27,6 @@ from trawl_ros.records.coefficients import COEFFICIENTS  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 96
 BEGIN_S = 540.0
 
 
@@ -84,7 +83,7 @@ def _play(graph, bag, **parameters):
 @pytest.mark.parametrize('rate', [0.0, 120.0])
 def test_a_finding_is_published_acknowledged_and_kept(open_graph, moving_bag, watching, rate):
     book = Path(watching['log_book'])
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         node = graph.add(DiscrepancyNode, **watching)
         bridge = graph.add(Bridge)
         graph.until(lambda: node.subscribers()[FINDINGS][0])
@@ -110,7 +109,7 @@ def test_a_bag_that_is_looped_is_two_tows_and_a_node_that_is_restarted_counts_on
 ):
     book = Path(watching['log_book'])
     for first in (1, 3):
-        with open_graph(DOMAIN) as graph:
+        with open_graph() as graph:
             node = graph.add(DiscrepancyNode, **watching)
             for _ in range(2):
                 _play(graph, moving_bag, rate=0.0)
@@ -121,7 +120,7 @@ def test_a_bag_that_is_looped_is_two_tows_and_a_node_that_is_restarted_counts_on
 
 
 def test_nothing_is_watched_where_it_is_not_wanted(open_graph, coarse_gear, tmp_path):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         node = graph.add(partial(DiscrepancyNode), gear=str(coarse_gear))
         assert [one.name for one in node.statuses()] == ['discrepancy']
         node.finish_work()

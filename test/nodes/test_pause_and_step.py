@@ -22,7 +22,6 @@ from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 102
 TIME_SCALE = 5.0
 DOCUMENT = Path(__file__).parents[2] / 'docs/diagnostics.md'
 INSTRUMENTS = (WinchNode, DoorSensorNode, TrawlSonarNode, VesselNode)
@@ -58,7 +57,7 @@ class Crew(TrawlNode):
 
 @pytest.fixture(scope='module')
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

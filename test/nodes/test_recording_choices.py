@@ -24,7 +24,6 @@ from trawl_ros.records.samples import HeadingSample, WinchSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 106
 IMU = 'sensor_msgs/msg/Imu'
 BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = QoSProfile(
@@ -36,7 +35,7 @@ LATCHED = QoSProfile(
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

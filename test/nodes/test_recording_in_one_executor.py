@@ -31,7 +31,6 @@ from trawl_ros.scenario.scenario import load_scenario  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 80
 INSTRUMENTS = (WinchNode, DoorSensorNode, TrawlSonarNode, VesselNode)
 TRUTHS = 241
 
@@ -41,7 +40,7 @@ def tow(open_graph, scenario_path, tmp_path_factory):
     """The bag of one tow as fast as the graph follows, and what each publisher has counted."""
     path = tmp_path_factory.mktemp('tow') / 'bag'
     scenario = str(scenario_path)
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         graph.add(BagRecorder, output=str(path), use_sim_time=True)
         instruments = [
             graph.add(kind, scenario=scenario, use_sim_time=True, wait_for=['bag_recorder'])
@@ -148,7 +147,7 @@ def numbers(values):
 
 def test_the_player_gives_the_bag_back_message_for_message(tow, open_graph, tmp_path):
     copy = tmp_path / 'copy'
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         graph.add(BagRecorder, output=str(copy))
         player = graph.add(BagPlayer, bag=str(tow.path), rate=0.0, wait_for=['bag_recorder'])
         # What the nodes say of themselves now is not what was recorded.

@@ -25,7 +25,6 @@ from trawl_ros.records.samples import HeadingSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 105
 TOPIC = '/trawl/vessel/heading'
 RUN_S = 2.7
 """Not a multiple of the recorder's own period."""
@@ -52,10 +51,10 @@ def killed(open_graph, tmp_path_factory):
     path = folder / 'bag'
     code = 'import sys; from trawl_ros.nodes.bag_recorder import main; sys.exit(main())'
     with (
-        open_graph(DOMAIN) as graph,
+        open_graph() as graph,
         subprocess.Popen(
             [sys.executable, '-c', code, '--ros-args', '-p', f'output:={path}'],
-            env={**os.environ, 'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(folder / 'log')},
+            env={**os.environ, **graph.environment},
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         ) as recorder,

@@ -28,7 +28,6 @@ from trawl_ros.records.topics import CLOCK, STATIC_TRANSFORMS, TRANSFORMS, absol
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 116
 NODES = (
     AutopilotNode,
     AutotrawlNode,
@@ -63,7 +62,7 @@ AT_TIMES = {
 @pytest.fixture(scope='module')
 def used(open_graph, gear_path, tmp_path_factory):
     """Names of what each node publishes, hears, answers and calls while all of them are there."""
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         gear = {'gear': str(gear_path)}
         parameters = {
             'SimNode': gear,
@@ -85,7 +84,7 @@ def used(open_graph, gear_path, tmp_path_factory):
         shown = nodes[NODES.index(FoxgloveNode)]
         with connect(f'ws://127.0.0.1:{VIEWED}', subprotocols=['foxglove.sdk.v1']) as viewer:
             want_everything(viewer, len(shown._topics))
-            graph.until(lambda: len(shown._profiles) == len(shown._topics))
+            graph.until(lambda: len(shown._heard) == len(shown._topics))
             graph.until(lambda: '/trawl/truth/winch' in recorder.traffic.counts('received'))
             graph.rest(1.0)
             return {node.get_name(): names_of(node) for node in (*nodes, commanding)}

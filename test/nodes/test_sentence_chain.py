@@ -33,7 +33,6 @@ from trawl_ros.sentences.table import load_table  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 228
 START = 1000 * SECOND
 LEG_S = 40
 RULES = {'settle_s': 10.0, 'settle_passages': 0.0, 'window_s': 20.0}
@@ -86,7 +85,7 @@ def renamed(name, **remaps):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

@@ -1,6 +1,5 @@
 """The same tow with a process per node, as users start them."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -20,7 +19,6 @@ from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 87
 INSTRUMENTS = ('winch_node', 'door_sensor_node', 'trawl_sonar_node', 'vessel_node')
 TRUTHS = 241
 
@@ -50,7 +48,7 @@ class Monitor(TrawlNode):
 
 
 @pytest.fixture
-def start(tmp_path):
+def start():
     """Start a node as a process; all that still run are ended afterwards."""
     started = []
 
@@ -62,7 +60,6 @@ def start(tmp_path):
         )
         process = subprocess.Popen(
             [sys.executable, '-c', code, *(['--ros-args', *options] if options else [])],
-            env={**os.environ, 'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(tmp_path / 'log')},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -87,10 +84,12 @@ def ended(process, number):
 
 
 @pytest.fixture
-def tow(start, open_graph, scenario_path, tmp_path):
+def tow(start, open_graph, scenario_path, tmp_path, monkeypatch):
     path = tmp_path / 'bag'
     scenario = str(scenario_path)
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
+        for name, value in graph.environment.items():
+            monkeypatch.setenv(name, value)
         monitor = graph.add(Monitor)
         recorder = start('bag_recorder', output=path, use_sim_time='true')
         instruments = [
@@ -127,7 +126,7 @@ def test_a_tow_is_recorded_whole_and_every_process_ends_cleanly(tow):
     ('node', 'parameters', 'sentence'),
     [
         ('bag_recorder', {}, 'parameter output: missing'),
-        ('bag_recorder', {'output': '{full}'}, 'exists already and is not written over'),
+        ('bag_recorder', {'output': '{full}/mine.txt/bag'}, 'parameter output: '),
         ('bag_player', {'bag': '{full}/nothing'}, 'nothing: no such bag'),
         ('bag_player', {'bag': '{full}'}, 'expected a bag'),
         ('winch_node', {'instruments': 'unheard-of'}, 'there are: default.yaml'),

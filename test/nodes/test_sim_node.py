@@ -21,7 +21,6 @@ from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 82
 LEAD_S = 2.0
 
 
@@ -56,7 +55,7 @@ class Crew(TrawlNode):
 
 @pytest.fixture(scope='module')
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 
@@ -234,7 +233,7 @@ def test_two_clocks_are_an_error_that_names_both(graph, simulation, crew):
 def test_what_cannot_be_at_the_start_is_an_error(open_graph, name, value, reason):
     from trawl_ros.core.errors import TrawlError
 
-    with open_graph(DOMAIN + 1) as graph, pytest.raises(TrawlError) as raised:
+    with open_graph() as graph, pytest.raises(TrawlError) as raised:
         graph.add(SimNode, **{name: value})
     assert reason in str(raised.value)
     assert issubclass(ParameterError, TrawlError)

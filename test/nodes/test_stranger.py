@@ -18,7 +18,6 @@ from trawl_ros.records.samples import RangeSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 112
 SPREAD, SPREAD_TYPE = 'door/spread', 'sensor_msgs/msg/Range'
 CLOCK_TYPE, HEADER_TYPE = 'rosgraph_msgs/msg/Clock', 'std_msgs/msg/Header'
 METRES = 100.0
@@ -51,10 +50,9 @@ def heard(open_graph):
     """What is said while a stranger of some kind is there until something is heard."""
 
     def hear(kind, target, enough):
-        environment = {'ROS_DOMAIN_ID': str(DOMAIN)}
-        with open_graph(DOMAIN) as graph:
+        with open_graph() as graph:
             ship = graph.add(Ship)
-            with Stranger(environment, kind, target) as stranger:
+            with Stranger(graph.environment, kind, target) as stranger:
                 seen = SimpleNamespace(
                     spread=ship.heard[SPREAD],
                     clock=ship.heard['/clock'],

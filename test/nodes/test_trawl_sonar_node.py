@@ -30,7 +30,6 @@ from trawl_ros.simulation.simulation import Simulation  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 221
 SEED = 6
 
 
@@ -76,7 +75,7 @@ class Deck(TrawlNode):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

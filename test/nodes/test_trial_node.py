@@ -19,8 +19,8 @@ from trawl_ros.messages.stamps import header, stamp_of  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.messages.truth_to_messages import clock_message  # noqa: E402
 from trawl_ros.nodes import trial_node  # noqa: E402
+from trawl_ros.nodes.graph.graph_checks import SYNC  # noqa: E402
 from trawl_ros.nodes.runtime.credit import HEADER  # noqa: E402
-from trawl_ros.nodes.runtime.graph_checks import SYNC  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.runtime.qos import CONSUMER, LATCHED  # noqa: E402
 from trawl_ros.nodes.trial_node import TrialNode  # noqa: E402
@@ -35,7 +35,6 @@ from trawl_ros.records.samples import (  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 222
 STEP_NS = SECOND // 2
 LOG = '/trawl/vessel/velocity_water'
 TARGETS = tuple(TrialTarget(port=length, starboard=length, speed=2.1) for length in (400.0, 350.0))
@@ -98,7 +97,7 @@ class Ship(TrawlNode):
 
 @pytest.fixture
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 

@@ -19,8 +19,6 @@ from trawl_ros.view.records import Innovations, Note, Quantities  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 229
-
 
 def recorded_to(path):
     return LiveView(TOPICS, 'headless', bind='127.0.0.1', port=None, memory_mb=200, output=path)
@@ -49,8 +47,8 @@ def winch(second, length):
 
 def test_what_is_published_is_recorded_with_its_stamps(open_graph, tmp_path, monkeypatch):
     path = tmp_path / 'live.rrd'
-    monkeypatch.setattr(view_node, 'open_view', lambda parameters: recorded_to(path))
-    with open_graph(DOMAIN) as graph:
+    monkeypatch.setattr(view_node, 'open_view', lambda parameters, output: recorded_to(path))
+    with open_graph() as graph:
         node = graph.add(ViewNode)
         ship = graph.add(lambda **kwargs: TrawlNode('ship', **kwargs))
         ship.advertise('winch/joint_states')
@@ -108,8 +106,10 @@ def test_a_reading_that_is_none_is_not_drawn(tmp_path):
 
 
 def test_the_status_tells_what_was_given_up(open_graph, tmp_path, monkeypatch):
-    monkeypatch.setattr(view_node, 'open_view', lambda parameters: recorded_to(tmp_path / 'l.rrd'))
-    with open_graph(DOMAIN) as graph:
+    monkeypatch.setattr(
+        view_node, 'open_view', lambda parameters, output: recorded_to(tmp_path / 'l.rrd')
+    )
+    with open_graph() as graph:
         node = graph.add(ViewNode)
         node._view.lost = 3
         (status,) = node.statuses()

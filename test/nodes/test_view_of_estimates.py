@@ -23,8 +23,6 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 Recording = runpy.run_path(str(Path(__file__).parents[1] / 'view' / 'conftest.py'))['Recording']
 
-DOMAIN = 230
-
 
 STEADY = {'settle_s': 10.0, 'settle_passages': 0.0, 'window_s': 20.0}
 
@@ -38,8 +36,10 @@ def shown(open_graph, tight_tows, coarse_gear, estimate_listener, tmp_path_facto
     """The recording of the view, and what the nodes know at the end."""
     folder = tmp_path_factory.mktemp('shown')
     gear = str(coarse_gear)
-    with pytest.MonkeyPatch.context() as patch, open_graph(DOMAIN) as graph:
-        patch.setattr(view_node, 'open_view', lambda parameters: recorded_to(folder / 'live.rrd'))
+    with pytest.MonkeyPatch.context() as patch, open_graph() as graph:
+        patch.setattr(
+            view_node, 'open_view', lambda parameters, output: recorded_to(folder / 'live.rrd')
+        )
         viewer = graph.add(ViewNode, gear=gear)
         estimator = graph.add(IdentificationNode, gear=gear, **STEADY)
         watcher = graph.add(

@@ -89,7 +89,7 @@ def workspace(source_workspace: Path) -> Workspace:
     environment = clean_environment(source_workspace)
     beside = Path(sys.executable).parent
     sourced = subprocess.run(
-        ['bash', '-c', f'{{ {readme_line("colcon build")}; }} >&2 && env -0'],
+        ['bash', '-c', f'{{ {readme_line("python3 -m colcon build")}; }} >&2 && env -0'],
         cwd=source_workspace,
         env={**environment, 'PATH': f'{beside}{os.pathsep}{environment["PATH"]}'},
         stdin=subprocess.DEVNULL,

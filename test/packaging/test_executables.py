@@ -41,7 +41,6 @@ NODES = (
     'foxglove_node',
     'view_node',
 )
-DOMAINS = (*range(70, 80), 81, 223, 224, 225, 226, 227)
 # What is installed elsewhere is compiled anew there, which takes sim_node a quarter of a minute.
 QUICK = ('vessel_node', 'winch_node')
 START_S = 60.0  # the bound for a machine busy with other tests; one to three seconds are usual
@@ -74,10 +73,10 @@ def parameters(node: str, scratch: Path) -> list[str]:
 
 
 @contextmanager
-def diagnostics(domain: int) -> Iterator[tuple[SingleThreadedExecutor, list[DiagnosticArray]]]:
-    """Collect what is published on /diagnostics of a domain while the executor spins."""
+def diagnostics() -> Iterator[tuple[SingleThreadedExecutor, list[DiagnosticArray]]]:
+    """Collect what is published on /diagnostics while the executor spins."""
     context = Context()
-    rclpy.init(context=context, domain_id=domain)
+    rclpy.init(context=context)
     listener = rclpy.create_node('listener', context=context)
     received: list[DiagnosticArray] = []
     listener.create_subscription(DiagnosticArray, '/diagnostics', received.append, 10)
@@ -99,18 +98,11 @@ def diagnostics(domain: int) -> Iterator[tuple[SingleThreadedExecutor, list[Diag
         for case in zip(NODES, cycle((signal.SIGINT, signal.SIGTERM)))
     ],
 )
-def test_starts_publishes_and_ends_cleanly(workspace, node, end, tmp_path, monkeypatch):
-    domain = DOMAINS[NODES.index(node)]
-    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    environment = {
-        **workspace.environment,
-        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
-        'ROS_DOMAIN_ID': str(domain),
-        'ROS_LOG_DIR': str(tmp_path / 'log'),
-    }
+def test_starts_publishes_and_ends_cleanly(workspace, node, end, tmp_path):
+    environment = {**workspace.environment, 'ROS_LOG_DIR': str(tmp_path / 'log')}
     command = [str(workspace.executables / node), *parameters(node, tmp_path)]
     output = tmp_path / 'output.txt'
-    with diagnostics(domain) as (executor, received), output.open('w') as sink:
+    with diagnostics() as (executor, received), output.open('w') as sink:
         process = subprocess.Popen(
             command,
             env=environment,

@@ -39,9 +39,25 @@ def test_faults_are_planned_in_seconds(tmp_path: Path) -> None:
         ('{at_min: 2, where: door/spread, what: broken}', "fault 'broken': no such fault"),
         ('{at_min: 2, where: door/spread, what: none}', "found 'none', expected a fault"),
         ('{at_min: -2, where: door/spread, what: lost}', 'faults[0].at_min: found -2'),
+        (
+            '{at_min: 30, where: door/spread, what: lost}',
+            'at_min: found 30, expected less than the',
+        ),
+        ('{at_min: 999, where: door/spread, what: lost}', 'at_min: found 999, expected less than'),
     ],
 )
 def test_what_cannot_be_is_named(tmp_path: Path, fault: str, sentence: str) -> None:
     with pytest.raises(ScenarioError) as caught:
         load(tmp_path, fault)
     assert sentence in str(caught.value)
+
+
+def test_steps_that_are_all_wrong_are_not_said_to_be_missing(tmp_path: Path) -> None:
+    path = tmp_path / 'trial.yaml'
+    path.write_text(TRIAL.format(fault='{at_min: 2, where: door/spread, what: lost}').replace(
+        'minutes: 30', 'minutes: -30'
+    ))  # fmt: skip
+    with pytest.raises(ScenarioError) as caught:
+        load_scenario(path)
+    assert str(caught.value).count('\n') == 0
+    assert 'steps[0].minutes: found -30' in str(caught.value)

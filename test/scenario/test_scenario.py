@@ -129,12 +129,12 @@ def test_instruments_may_be_overridden_in_place(tmp_path: Path) -> None:
         (
             'warp_length_m: 300',
             'warp_length_m: -300',
-            'start.warp_length_m: found -300, expected a number greater than 0 (metres)',
+            'start.warp_length_m: found -300, expected a number greater than or equal to 1',
         ),
         (
             'warp_length_m: 400',
-            'warp_length_m: 3000',
-            'steps[1].warp_length_m: found 3000, expected a number less than 3000 (metres)',
+            'warp_length_m: 3001',
+            'steps[1].warp_length_m: found 3001, expected a number less than or equal to 3000',
         ),
         (
             'speed_m_s: 2.2',

@@ -42,8 +42,16 @@ def test_data_that_are_faster_than_the_wall_keep_their_order():
     assert np.abs(stamps - true).max() < SECOND
 
 
-def test_a_time_that_went_back_is_believed():
+def test_a_time_that_went_back_is_believed_when_three_agree():
     clock = LinkClock()
-    clock.hear(NOON, 0)
-    clock.hear(SECOND, SECOND)
-    assert clock.stamp(SECOND) == SECOND
+    assert clock.hear(NOON, 0)
+    assert [clock.hear(n * SECOND, n * SECOND) for n in (1, 2, 3)] == [False, False, True]
+    assert clock.stamp(3 * SECOND) == 3 * SECOND
+
+
+def test_a_false_time_leaves_the_clock_as_it_is():
+    clock = LinkClock()
+    assert clock.hear(NOON, 0)
+    assert not clock.hear(NOON * 1000, SECOND)
+    assert clock.hear(NOON + 2 * SECOND, 2 * SECOND)
+    assert clock.stamp(2 * SECOND) == NOON + 2 * SECOND

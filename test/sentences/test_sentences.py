@@ -23,7 +23,7 @@ from trawl_ros.sentences.framing import (
     HEADER,
     LONGEST_LINE,
     Foreign,
-    LineSplitter,
+    SentenceSplitter,
     Unreadable,
     framed,
     parse_line,
@@ -106,7 +106,7 @@ def test_tag_blocks_headers_and_what_a_recorder_wrote_are_no_hindrance(reader):
 @pytest.mark.parametrize(
     ('line', 'reason'),
     [
-        (b'\xff\xfe$SCWTP,4.25,T', 'a line that is no text'),
+        (b'$SCW\xffTP,4.25,T', 'a line that is no text'),
         (b'hello', 'without a sentence'),
         (checked('SCWTP,4.25,T').replace(b'4.25', b'4.26'), 'whose checksum is wrong'),
         (b'$SCWTP,4.25,T', r'\$SCWTP: no checksum'),
@@ -171,7 +171,7 @@ def test_noise_never_does_more_than_be_refused(reader):
 
 
 def test_a_stream_is_cut_into_lines_in_bounded_memory():
-    splitter = LineSplitter()
+    splitter = SentenceSplitter()
     assert list(splitter.feed(b'$A,1\r\n$B')) == [b'$A,1']
     assert list(splitter.feed(b',2\n\n\r$C')) == [b'$B,2']
     assert list(splitter.datagram(b',3')) == [b'$C,3']

@@ -6,20 +6,20 @@ is. A bag without findings is sound.
 
 from array import array
 from collections.abc import Collection
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
 
+import numpy as np
 from rosbags.interfaces import Qos, QosDurability, QosReliability
 
 from trawl_ros.bags.check_records import BagCheck, Finding, TopicCheck
 from trawl_ros.bags.header_stamps import StampReader, stamp_reader
-from trawl_ros.bags.one_source import SourceWatch
 from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.bags.topic_content import TopicContent
+from trawl_ros.core.errors import BagError
+from trawl_ros.core.stamps import judge_stamps
 from trawl_ros.core.time import SECOND
-from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
 from trawl_ros.records.topics import (
     COMMANDS,
     ESTIMATES,
@@ -87,38 +87,44 @@ def check_bag(
     wanted = _required(required, namespace)
     bag = Bag(path, namespace=namespace, lenient=True)
     records = {topic: _Record(stamp_reader(bag, topic)) for topic in bag.topics}
-    sources = {absolute(name, namespace): _Source(name) for name in SAMPLE_TOPICS}
+    contents = {
+        topic: TopicContent(known.name)
+        for topic, type_name in bag.topics.items()
+        if (known := find_topic(topic, namespace)) and known.type == type_name
+    }
     for message in bag.as_stored():
         records[message.topic].take(message)
-        if message.topic in sources:
-            sources[message.topic].take(bag, message)
+        if message.topic in contents:
+            contents[message.topic].take(bag, message)
+    log_span = _log_span(records.values())
+    span, findings = _judge_times(records.values())
     offered = bag.offered()
     topics = [
         _topic_check(topic, bag.topics[topic], record, _words(offered[topic]), namespace)
         for topic, record in sorted(records.items())
     ]
-    findings = _whole(bag, topics)
+    findings += _whole(bag, topics)
     for checked in topics:
         known = find_topic(checked.topic, namespace)
         if known is not None:
             findings += _against_contract(
                 checked, known, offered[checked.topic], records[checked.topic]
             )
-    findings += [
-        Finding('source', topic, f'has two sources, for {source.why}; expected one')
-        for topic, source in sources.items()
-        if source.why
-    ]
+    for topic, content in contents.items():
+        findings += content.findings(topic)
+    if not bag.problems:
+        counts = {topic.topic: topic.count for topic in topics if topic.count}
+        faults = bag.metadata_faults(counts, log_span)
+        findings += [Finding('content', '', fault) for fault in faults]
     there = {checked.topic for checked in topics if checked.count}
     for name in sorted(wanted - there):
         findings.append(Finding('missing', name, 'is required, and has no message'))
-    times = [time for record in records.values() for time in record.span()]
     return BagCheck(
         path=bag.path,
         facts=bag.facts,
         count=sum(checked.count for checked in topics),
-        start=min(times, default=None),
-        end=max(times, default=None),
+        start=span and span[0],
+        end=span and span[1],
         damaged_chunks=bag.damaged_chunks,
         topics=tuple(topics),
         missing=_missing(there, namespace),
@@ -132,6 +138,8 @@ class _Record:
 
     stamp_in: StampReader | None
     times: 'array[int]' = field(default_factory=lambda: array('q'))
+    stamps: 'array[int]' = field(default_factory=lambda: array('q'))
+    count: int = 0
     bytes: int = 0
     backward: int = 0
     duplicates: int = 0
@@ -140,6 +148,7 @@ class _Record:
     types: set[str] = field(default_factory=set)
 
     def take(self, message: RawMessage) -> None:
+        self.count += 1
         self.times.append(message.log_time)
         self.bytes += len(message.data)
         self.types.add(message.type)
@@ -150,12 +159,10 @@ class _Record:
             self.backward += stamp < self.last_stamp
             self.duplicates += stamp == self.last_stamp
         self.last_stamp = stamp
+        self.stamps.append(stamp)
         lag = message.log_time - stamp
         least, greatest = self.lag or (lag, lag)
         self.lag = min(least, lag), max(greatest, lag)
-
-    def span(self) -> tuple[int, ...]:
-        return (self.times[0], self.times[-1]) if self.times else ()
 
     def median_interval(self) -> float:
         return median(self.intervals() or [0])
@@ -164,20 +171,30 @@ class _Record:
         return [after - before for before, after in zip(self.times, self.times[1:])]
 
 
-@dataclass
-class _Source:
-    """Check that a topic has one source; ``why`` names the evidence of several."""
+def _judge_times(records: Collection[_Record]) -> tuple[tuple[int, int] | None, list[Finding]]:
+    """Judge header stamps and log times of all topics; log times that cannot be are dropped."""
+    of_headers, judged = (
+        judge_stamps(np.concatenate([np.zeros(0, dtype=np.int64), *numbers]))
+        for numbers in ([r.stamps for r in records], [r.times for r in records])
+    )
+    findings = [Finding('stamp', '', f'of headers, {text}') for text in of_headers.sentences()]
+    findings += [Finding('stamp', '', f'of the log, {text}') for text in judged.sentences()]
+    span = judged.span
+    if judged.reasons and span:
+        for record in records:
+            record.times = array('q', (time for time in record.times if span[0] <= time <= span[1]))
+    return span, findings
 
-    name: str
-    why: str = ''
-    watch: SourceWatch = field(default_factory=SourceWatch)
 
-    def take(self, bag: Bag, message: RawMessage) -> None:
-        # Once it is known nothing more is decoded.
-        with suppress(BagError, MessageError):
-            if not self.why:
-                sample = to_sample(self.name, bag.decode(message))
-                self.why = self.watch.take(message.channel, sample)
+def _log_span(records: Collection[_Record]) -> tuple[int, int] | None:
+    """First and last log time (ns) of all; None without messages."""
+    ends = [
+        time
+        for record in records
+        if record.times
+        for time in record.times[:: len(record.times) - 1 or 1]
+    ]
+    return (min(ends), max(ends)) if ends else None
 
 
 def _required(names: Collection[str], namespace: str) -> set[str]:
@@ -207,7 +224,7 @@ def _topic_check(
         topic=topic,
         type=' and '.join(sorted(record.types | {type_name})),
         group=groups[0] if groups else '',
-        count=len(record.times),
+        count=record.count,
         bytes=record.bytes,
         rate=len(intervals) * SECOND / span if span else None,
         usual_rate=known.rate if known else None,

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from trawl_ros.bags.field_units import field_unit
 from trawl_ros.bags.flattening import FlatColumn, FlatLayout, as_seconds, as_text, singles, varies
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import BagError, MessageError
-from trawl_ros.core.files import new_folder
+from trawl_ros.core.files import new_folder, written_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.topics import NAMESPACE, absolute, find_topic
@@ -102,12 +102,13 @@ def export_bag(
         ]
         known = '; '.join([*bag.problems, *reasons]) or 'no message'
         raise BagError(f'{bag.path}: gives no row of a table ({known})')
-    try:
-        folder.mkdir(parents=True)
-        done = tuple(_write(bag, folder, layouts, on_progress))
-        _write_dictionary(bag, folder, layouts, namespace)
-    except OSError as reason:
-        raise BagError(f'{folder}: cannot be written ({reason.strerror})') from reason
+    with written_folder(folder, BagError) as draft:
+        draft.mkdir()
+        tables = _write(bag, draft, layouts, on_progress)
+        done = tuple(
+            replace(table, file=table.file and folder / table.file.name) for table in tables
+        )
+        _write_dictionary(bag, draft, layouts, namespace)
     return Exported(done, tuple(bag.problems))
 
 

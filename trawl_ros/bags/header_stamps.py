@@ -1,9 +1,13 @@
 """Header stamps of stored messages, read by the bag's own types."""
 
-from collections.abc import Callable
+from array import array
+from collections.abc import Callable, Collection
+
+import numpy as np
 
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import BagError
+from trawl_ros.core.stamps import StampJudgement, judge_stamps
 from trawl_ros.messages.stamps import stamp_in
 
 StampReader = Callable[[bytes], int | None]
@@ -27,3 +31,14 @@ def stamp_reader(bag: Bag, topic: str) -> StampReader | None:
     if not fields or fields[0][1][1] != _HEADER:
         return None
     return stamp_in
+
+
+def judge_headers(bag: Bag, topics: Collection[str]) -> StampJudgement:
+    """Judge the header stamps of topics, named in full, by reading through a bag once."""
+    readers = {topic: stamp_reader(bag, topic) for topic in bag.topics if topic in topics}
+    stamps = array('q')
+    for message in bag.raw(topics):
+        reader = readers[message.topic]
+        if reader and (stamp := reader(message.data)) is not None:
+            stamps.append(stamp)
+    return judge_stamps(np.array(stamps, dtype=np.int64))

@@ -1,4 +1,5 @@
-"""Two sources on one topic, told by their channels, their stamps, or readings that alternate.
+"""Two sources on one topic, told by their channels, their stamps, or readings that alternate;
+and clocks that look like two sources, as they stand still or were set back.
 
 A publisher leaves no name in a bag. That there are two is known from what one cannot do: come by
 turns from two channels, give two readings for one time, go back in time again and again, jump
@@ -9,10 +10,13 @@ instead of, those that its rate asks for.
 from array import array
 from collections.abc import Sequence
 from statistics import median
+from typing import NamedTuple
 
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, StampArray
+from trawl_ros.core.stamps import CONFIRM, lasting, when
+from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import (
     AttitudeSample,
     PressureSample,
@@ -61,17 +65,36 @@ to that between two that have not: a reading that is wrong stands in another's p
 two."""
 
 
+BACK_NS = 10 * SECOND
+"""Stamps that go back by more than this (ns) are those of a clock that was set back."""
+
+RECENT = 2 * CONFIRM - 1
+"""Readings of which the middle one has a stamp that can be believed."""
+
+SETTLED = 10
+"""Readings behind a step back from which on the clock was set, and none is stamped falsely."""
+
+
+class Doubt(NamedTuple):
+    """Reason not to use a topic: ``source`` or ``stamp``, and what was found and expected."""
+
+    kind: str
+    text: str
+
+
 class SourceWatch:
-    """Watch for a second source among the readings of one topic, as they come."""
+    """Watch for a second source, or a clock that tells no time, among the readings of a topic."""
 
     def __init__(self) -> None:
         # Numbers side by side, for there are as many of these as messages.
         self._channels, self._stamps, self._values = array('q'), array('q'), array('d')
+        self._sequences = array('q')
         self._count = 0
-        self._why = ''
+        self._step: tuple[int, int, int] | None = None
+        self._doubt: Doubt | None = None
 
-    def take(self, channel: int, sample: Sample) -> str:
-        """Take a reading; why there are two sources by the last judgement, '' for one.
+    def take(self, channel: int, sample: Sample, sequence: int = 0) -> Doubt | None:
+        """Take a reading; give the doubt by the last judgement, None without one.
 
         Parameters
         ----------
@@ -79,24 +102,67 @@ class SourceWatch:
             Number of the channel by which it came.
         sample
             Reading of the message.
+        sequence
+            Number of the message in the order of arrival; 0 throughout where it is not known.
         """
         values = _values(sample)
         if values is None:
-            return ''
+            return None
+        self._watch_steps(sample.stamp)
         self._channels.append(channel)
         self._stamps.append(sample.stamp)
+        self._sequences.append(sequence)
         self._values.extend(values)
         self._count += 1
         if self._count % (BLOCK // 2) == 0:
-            del self._channels[:-MEMORY], self._stamps[:-MEMORY]
+            for numbers in (self._channels, self._stamps, self._sequences):
+                del numbers[:-MEMORY]
             del self._values[: -MEMORY * len(values)]
-            self._why = self._judge()
-        return self._why
+            self._doubt = self._judge()
+        return self._doubt
 
-    def _judge(self) -> str:
-        stamps = np.array(self._stamps)
+    def _watch_steps(self, stamp: int) -> None:
+        """Remember the last step back: count, and stamps before and after it."""
+        if not self._stamps:
+            return
+        before = self._stamps[-1]
+        if stamp < before - BACK_NS:
+            # After a false stamp far ahead, readings go on from those before it.
+            recent = sorted(self._stamps[-RECENT:])
+            if stamp < recent[len(recent) // 2] - BACK_NS:
+                self._step = self._count, before, stamp
+        elif self._step and stamp > self._step[1]:
+            # A stamp was false, another source speaks, or all is past.
+            self._step = None
+
+    def _judge(self) -> Doubt | None:
+        stamps, channels = np.array(self._stamps), self._channels[-BLOCK:]
+        if (doubt := _still(stamps) or self._set_back()) is not None:
+            return doubt
+        why = self._second_source(stamps, channels)
+        if not why:
+            return None
+        # Sorted by its stamps, a bag does not tell these two apart.
+        known = any(self._sequences) or channels.count(channels[0]) < len(channels)
+        also = '' if known else ' (or one, whose clock was set back)'
+        return Doubt('source', f'has two sources{also}, for {why}; expected one instrument')
+
+    def _set_back(self) -> Doubt | None:
+        if self._step is not None and self._count - self._step[0] >= SETTLED:
+            _, before, after = self._step
+            return _clock_set_back(f'at {when(before)}, by {lasting(before - after)}')
+        # Sorted by their stamps, readings of before and after stand between each other.
+        order = np.diff(np.array(self._sequences[-BLOCK:]))
+        ahead = order[order > BLOCK // 2]
+        if len(ahead) < SETTLED or np.count_nonzero(order < -(BLOCK // 2)) < SETTLED:
+            return None
+        return _clock_set_back(
+            f'after {when(self._stamps[-1])} or so: readings that came '
+            f'{int(np.median(ahead))} later have the same stamps'
+        )
+
+    def _second_source(self, stamps: StampArray, channels: Sequence[int]) -> str:
         readings = np.array(self._values).reshape(len(stamps), -1)
-        channels = self._channels[-BLOCK:]
         if channels.count(channels[0]) < len(channels) and (why := _by_turns(channels)):
             return why
         steps, values = np.diff(stamps[-BLOCK:]), readings[-BLOCK:]
@@ -115,6 +181,21 @@ class SourceWatch:
         if visits := _visits(stamps, readings):
             return f'{visits} of {len(readings)} readings lie on a second course beside the first'
         return ''
+
+
+def _still(stamps: StampArray) -> Doubt | None:
+    """Tell stamps (n,) that stand still."""
+    last = int(stamps[-1])
+    if np.any(stamps[-BLOCK // 2 :] != last):
+        return None
+    found = 'never stamps' if last == 0 else f'has a clock that stands still ({when(last)})'
+    return Doubt('stamp', f'{found}: all of {BLOCK // 2} stamps are {last}; expected the time of '
+                 'each reading')  # fmt: skip
+
+
+def _clock_set_back(where: str) -> Doubt:
+    return Doubt('stamp', f'has a clock that was set back {where}; expected one that goes on (cut '
+                 'the bag there)')  # fmt: skip
 
 
 def _by_turns(channels: Sequence[int]) -> str:

@@ -24,7 +24,9 @@ from trawl_ros.records.topics import NAMESPACE, find_topic
 
 @dataclass(frozen=True)
 class RawMessage:
-    """Raw message of a bag: full topic name, type, times in ns, CDR bytes, channel."""
+    """Raw message of a bag: full topic name, type, times in ns, CDR bytes, channel, and number of
+    arrival (0 where it is not known).
+    """
 
     topic: str
     type: str
@@ -32,6 +34,7 @@ class RawMessage:
     publish_time: int
     data: bytes
     channel: int = 0
+    sequence: int = 0
 
 
 @dataclass(frozen=True)
@@ -91,8 +94,11 @@ class Bag:
         self._lenient = lenient
         with reading(self.path, BagError):
             self._source = open_source(self.path, self._report, lenient=lenient)
-        self.topics = {topic: definition.type for topic, definition in self.definitions().items()}
+        # Gathered once: there may be thousands.
+        self._definitions = self._source.definitions
+        self.topics = {topic: definition.type for topic, definition in self._definitions.items()}
         self.custom_data = self._source.custom_data
+        self._counted = all(file.counts_arrivals for file in self._source.files)
         self._types = BagTypes()
         self._decoders_made: dict[str, Decoder] = {}
 
@@ -111,9 +117,13 @@ class Bag:
         """Files without index, which are scanned for messages."""
         return [file.path for file in self._source.files if not file.indexed]
 
+    def metadata_faults(self, counts: Mapping[str, int], span: tuple[int, int] | None) -> list[str]:
+        """Hold ``metadata.yaml`` against all that was read; see `metadata_faults`."""
+        return self._source.metadata_faults(counts, span)
+
     def definitions(self) -> dict[str, Definition]:
         """Return the definitions by full topic name."""
-        return self._source.definitions
+        return self._definitions
 
     def offered(self) -> dict[str, tuple[Qos, ...]]:
         """Return by full topic name the QoS that its publishers offered; empty where unknown.
@@ -138,7 +148,7 @@ class Bag:
             If a topic of the project has another type than it should, or there is not one
             readable message in the whole bag.
         """
-        return map(_raw, self._wanted(topics))
+        return map(self._raw, self._wanted(topics))
 
     def _wanted(self, topics: Collection[str] | None) -> Iterator[Stored]:
         """Give the messages of `raw` as their files have them."""
@@ -154,7 +164,7 @@ class Bag:
 
     def as_stored(self) -> Iterator[RawMessage]:
         """Give all messages undecoded and unchecked, whatever their types; there may be none."""
-        return map(_raw, self._stored())
+        return map(self._raw, self._stored())
 
     def _stored(self) -> Iterator[Stored]:
         """Give the messages of `as_stored` as their files have them."""
@@ -186,8 +196,9 @@ class Bag:
             there = stored.message
             yield Received(stored.topic, stored.type, there.log_time, message, there.channel_id)
 
-    def passing(self, topics: Collection[str]) -> Iterator[tuple[str, int, Any]]:
-        """Give full topic name, channel and decoded message, as `messages`, for those in a hurry.
+    def passing(self, topics: Collection[str]) -> Iterator[tuple[str, int, int, Any]]:
+        """Give full topic name, channel, number of arrival (0 where it is not known) and decoded
+        message, as `messages`, for those in a hurry.
 
         A message may be filled anew with the content of the next: nobody may keep one.
 
@@ -197,7 +208,8 @@ class Bag:
             As `messages`.
         """
         for stored, message in self._decoded(self._decoders(topics, self._types.refilling)):
-            yield stored.topic, stored.message.channel_id, message
+            there = stored.message
+            yield stored.topic, there.channel_id, self._counted * there.sequence, message
 
     def _decoded(self, decoders: Mapping[str, Decoder]) -> Iterator[tuple[Stored, Any]]:
         failed: Counter[str] = Counter()
@@ -226,7 +238,7 @@ class Bag:
         """
         if raw.topic not in self._decoders_made:
             self._decoders_made[raw.topic] = self._types.decoder(
-                raw.topic, self._source.definitions[raw.topic]
+                raw.topic, self._definitions[raw.topic]
             )
         return self._decoders_made[raw.topic](raw.data)
 
@@ -238,7 +250,7 @@ class Bag:
         BagError
             If the bag's definition of the type is not understood.
         """
-        return self._types.store(topic, self._source.definitions[topic])
+        return self._types.store(topic, self._definitions[topic])
 
     def summary(self) -> BagSummary:
         """Count all messages by reading through the whole bag."""
@@ -286,15 +298,15 @@ class Bag:
                     raise BagError(sentence)
                 self._report(sentence)
 
+    def _raw(self, stored: Stored) -> RawMessage:
+        topic, type_name, there = stored
+        times = there.log_time, there.publish_time
+        number = self._counted * there.sequence
+        return RawMessage(topic, type_name, *times, there.data, there.channel_id, number)
+
     def _report(self, problem: str) -> None:
         if problem not in self.problems:
             self.problems.append(problem)
-
-
-def _raw(stored: Stored) -> RawMessage:
-    topic, type_name, there = stored
-    times = there.log_time, there.publish_time
-    return RawMessage(topic, type_name, *times, there.data, there.channel_id)
 
 
 def read_messages(

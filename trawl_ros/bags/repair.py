@@ -11,13 +11,17 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from trawl_ros.bags.sources import check_topics
+from trawl_ros.bags.storage.allowance import Allowance
+from trawl_ros.bags.storage.decoding import BagTypes, Decoder
 from trawl_ros.bags.storage.mcap_file import McapFile
-from trawl_ros.bags.storage.metadata import FILE_NAME, BagMetadata, load_metadata, read_information
-from trawl_ros.bags.storage.rosbag2_keys import lacking
+from trawl_ros.bags.storage.metadata import FILE_NAME, BagMetadata, load_metadata
+from trawl_ros.bags.storage.metadata_faults import metadata_faults
+from trawl_ros.bags.storage.packed_messages import PackedMessages
 from trawl_ros.bags.storage.stored import Definition, Stored
 from trawl_ros.bags.writer import BagWriter
-from trawl_ros.core.errors import BagError
-from trawl_ros.core.files import new_folder
+from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.core.files import new_folder, written_folder
 from trawl_ros.core.foreign import reading
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 
@@ -95,13 +99,13 @@ def repair_bag(
     if damaged.is_sound():
         return Repair(path, None, damaged.read, {}, False, ())
     new_folder(target, BagError)
-    with ExitStack() as stack:
+    with written_folder(target, BagError) as draft, ExitStack() as stack:
         bag: BagWriter | None = None
         for number, file in enumerate(damaged.files):
             begun = False
             for definition, stored in damaged.messages(file, on_progress):
                 if bag is None:
-                    bag = stack.enter_context(BagWriter(target, custom_data=damaged.custom_data))
+                    bag = stack.enter_context(BagWriter(draft, custom_data=damaged.custom_data))
                 elif number and not begun:
                     bag.split()
                 begun = True
@@ -133,10 +137,15 @@ class _Damaged:
         self.path = path
         self.problems: list[str] = []
         self.read: Counter[str] = Counter()
+        self._unusable: dict[Path, Counter[str]] = {}
+        """Messages that are none of their type, by file and topic."""
         self._types: dict[str, Definition] = {}
+        self._decoders: dict[str, Decoder | None] = {}
+        self._bag_types = BagTypes()
         self._metadata = self._load_metadata() if path.is_dir() else None
         self._check_kind()
         self.files = [file for name in self._names() if (file := self._open(name))]
+        check_topics(path, set[tuple[str, str]]().union(*(file.types() for file in self.files)))
         if not self.files:
             raise BagError(
                 f'{path}: no MCAP file that can be read; expected at least one '
@@ -164,13 +173,9 @@ class _Damaged:
                 self.read[stored.topic] += 1
                 time = stored.message.log_time
                 times = [min(times[0], time), max(times[1], time)] if times else [time, time]
-        stated: Counter[str] = Counter()
-        for (topic, _), count in self._metadata.counts().items():
-            stated[topic] += count
-        if stated != self.read or self._metadata.message_count != self.read.total():
-            self._report(f'{self.path}: {FILE_NAME} and the data disagree')
-        if times and self._metadata.span != tuple(times):
-            self._report(f'{self.path}: {FILE_NAME} states other times than the data have')
+        span = (times[0], times[1]) if times else None
+        for fault in metadata_faults(self.path, self._metadata, ('mcap',), self.read, span):
+            self._report(fault)
         return not self.problems
 
     def messages(
@@ -181,7 +186,10 @@ class _Damaged:
         stated = self._metadata.offered() if self._metadata else {}
         left_out: Counter[str] = Counter()
         begin: int | None = None
-        for stored in file.messages():
+        packed = PackedMessages()
+        unusable = self._unusable[file.path] = Counter[str]()
+        allowed = Allowance(file.path, file.path.stat().st_size)
+        for stored in packed.unpack(file.messages(), allowed):
             topic, time = stored.topic, stored.message.log_time
             definition = self._types.setdefault(topic, definitions[topic])
             if not stored.type or stored.type != definition.type:
@@ -189,14 +197,38 @@ class _Damaged:
                 continue
             if not definition.qos and stated.get(topic):
                 definition = self._types[topic] = replace(definition, qos=stated[topic])
+            if not self._decodes(stored, definition):
+                unusable[topic] += 1
+                continue
             begin = time if begin is None else begin
             on_progress(WorkProgress('repairing', (time - begin) / _SECOND, None, 's'))
             yield definition, stored
+        packed.report(file.path, self._report)
+        for topic, count in unusable.items():
+            self._report(
+                f'{file.path}: {count} messages on {topic} are no {definitions[topic].type} and '
+                'were left out'
+            )
+        unusable.update(packed.lost)
         for topic, count in left_out.items():
             self._report(
                 f'{file.path}: {count} messages on {topic} have no type, or another type than '
                 'the rest, and were left out'
             )
+
+    def _decodes(self, stored: Stored, definition: Definition) -> bool:
+        """True unless a message is none of its type; a type that is not understood passes."""
+        topic = stored.topic
+        if topic not in self._decoders:
+            try:
+                self._decoders[topic] = self._bag_types.refilling(topic, definition)
+            except BagError:
+                self._decoders[topic] = None
+        decode = self._decoders[topic]
+        try:
+            return decode is None or decode(stored.message.data) is not None
+        except MessageError:
+            return False
 
     def lost(self, saved: Mapping[str, int]) -> dict[str, int]:
         """Number of messages by topic that metadata or indexes count and that are not saved."""
@@ -210,6 +242,8 @@ class _Damaged:
         missing = {
             topic: count - saved.get(topic, 0) for topic, count in (by_metadata | by_index).items()
         }
+        for topic, count in sum(self._unusable.values(), Counter[str]()).items():
+            missing[topic] = max(missing.get(topic, 0), count)
         return {topic: count for topic, count in sorted(missing.items()) if count > 0}
 
     def _load_metadata(self) -> BagMetadata | None:
@@ -222,18 +256,17 @@ class _Damaged:
         except BagError as reason:
             self._report(str(reason))
             return None
-        if missing := lacking(read_information(file)):
-            self._report(f'{file}: rosbag2 misses {", ".join(missing)}')
         return metadata
 
     def _check_kind(self) -> None:
         known = self._metadata
-        if known and known.storage_identifier != 'mcap':
+        if self.path.is_dir() and not any(self.path.glob('*.mcap*')):
+            databases = any(self.path.glob('*.db3'))
             raise BagError(
-                f'{self.path}: storage {known.storage_identifier!r}; expected mcap (sqlite3 itself '
-                'recovers databases)'
+                f'{self.path}: no MCAP file; expected at least one'
+                + (' (sqlite3 itself recovers databases)' if databases else '')
             )
-        if known and known.compression_mode.lower() not in ('', 'none'):
+        if known and known.compression_mode.lower() not in ('', 'none', 'message'):
             raise BagError(
                 f'{self.path}: compressed per {known.compression_mode.lower()}; expected MCAP '
                 'files as they are, so unpack them first'

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from trawl_ros.bags.header_stamps import judge_headers
 from trawl_ros.bags.one_source import SourceWatch
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import BagError, MessageError
@@ -21,8 +22,9 @@ class SampleStream:
     """Stream of the samples of bags, in the order of log times within each.
 
     A bag that does not begin after the one before is moved in time to follow it: tows stay
-    apart, whatever their clocks said. A bag with two sources on one topic is refused: which of
-    them is right cannot be known, and an estimate of both would be of neither.
+    apart, whatever their clocks said. Samples whose stamp cannot be are left out and counted. A
+    bag with two sources on one topic is refused: which of them is right cannot be known, and an
+    estimate of both would be of neither; so is one whose clock stands still or was set back.
 
     Attributes
     ----------
@@ -57,7 +59,13 @@ class SampleStream:
         refused: Counter[str] = Counter()
         reasons: dict[str, str] = {}
         watches = {name: SourceWatch() for name in self.topics}
-        for topic, channel, message in bag.passing(names):
+        judged = judge_headers(bag, names)
+        wrong = [f'{path}: {sentence}' for sentence in judged.sentences()]
+        if judged.span is None and wrong:
+            raise BagError(f'{"; ".join(wrong)}; expected the time of each reading')
+        self.problems += wrong
+        first, last = judged.span or (0, 0)
+        for topic, channel, number, message in bag.passing(names):
             name = names[topic]
             try:
                 sample = to_sample(name, message)
@@ -65,10 +73,10 @@ class SampleStream:
                 refused[name] += 1
                 reasons.setdefault(name, str(reason))
                 continue
-            if why := watches[name].take(channel, sample):
-                raise BagError(
-                    f'{path}: {topic} has two sources, for {why}; expected one instrument'
-                )
+            if not first <= sample.stamp <= last:
+                continue
+            if doubt := watches[name].take(channel, sample, number):
+                raise BagError(f'{path}: {topic} {doubt.text}')
             yield sample
         self.problems += bag.problems
         for name, count in refused.items():

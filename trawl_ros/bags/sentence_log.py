@@ -9,7 +9,7 @@ from pathlib import Path
 
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.errors import BagError
-from trawl_ros.core.files import new_folder
+from trawl_ros.core.files import new_folder, written
 from trawl_ros.core.limits import LOG_READINGS
 from trawl_ros.records.fields import WaterColumn, fields_of_sample
 from trawl_ros.records.samples import Sample
@@ -79,8 +79,8 @@ def write_sentence_log(
     ordered.sort(key=lambda sample: sample.stamp)
     counts: Counter[str] = Counter()
     spoken: set[str] = set()
-    try:
-        with file.open('x', encoding='ascii', newline='') as lines:
+    with written(file) as draft:
+        with draft.open('x', encoding='ascii', newline='') as lines:
             for stamp, together in groupby(ordered, lambda sample: sample.stamp):
                 samples = list(together)
                 if not (texts := writer.write(*samples)):
@@ -89,14 +89,12 @@ def write_sentence_log(
                     lines.write(f'{text}\r\n')
                     counts[text.partition(',')[0]] += 1
                 spoken |= {topic for sample in samples if (topic := _told_by(sample))}
-    except OSError as reason:
-        raise BagError(f'{file}: cannot be written ({reason.strerror})') from reason
-    if not counts:
-        file.unlink()
-        systems = ' and '.join(table.system for table in tables)
-        raise BagError(
-            f'{path}: no reading that {systems} tells; expected one of {", ".join(writer.topics)}'
-        )
+        if not counts:
+            systems = ' and '.join(table.system for table in tables)
+            raise BagError(
+                f'{path}: no reading that {systems} tells; expected one of '
+                f'{", ".join(writer.topics)}'
+            )
     silent = tuple(topic for topic in writer.topics if topic not in spoken)
     return SentenceLog(counts, silent, tuple(stream.problems))
 

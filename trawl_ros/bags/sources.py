@@ -1,16 +1,17 @@
 """Source of a bag's messages: its files, whatever their storage, and its metadata."""
 
 import heapq
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
 from trawl_ros.bags.storage.allowance import Allowance
-from trawl_ros.bags.storage.chunks import Damaged, inflate
 from trawl_ros.bags.storage.database import Database
 from trawl_ros.bags.storage.mcap_file import McapFile
 from trawl_ros.bags.storage.metadata import FILE_NAME, BagMetadata, load_metadata
+from trawl_ros.bags.storage.metadata_faults import metadata_faults
+from trawl_ros.bags.storage.packed_messages import PackedMessages
 from trawl_ros.bags.storage.stored import Definition, StatedTopics, Stored
 from trawl_ros.bags.unpacked import Unpacked
 from trawl_ros.core.errors import BagError
@@ -37,6 +38,10 @@ class StorageFile(Protocol):
     @property
     def damaged_chunks(self) -> int:
         """Number of damaged chunks so far."""
+
+    @property
+    def counts_arrivals(self) -> bool:
+        """True if the numbers of its messages, by topic, are the order in which they came."""
 
     @property
     def definitions(self) -> dict[str, Definition]:
@@ -87,10 +92,11 @@ class BagSource:
         self.custom_data = dict((metadata and metadata.custom_data) or {})
         self._metadata = metadata
         self._report = report
-        self._packed = _mode(metadata) == 'message'
+        self._packed = PackedMessages()
         # Goes, with the files in it, when the source does.
         self._unpacked = unpacked
-        self._check_topics()
+        self.folder: Path | None = None
+        check_topics(self.files[0].path, self.types())
 
     @property
     def facts(self) -> BagFacts:
@@ -99,6 +105,7 @@ class BagSource:
         chunks = set[str]().union(*(file.chunk_compressions for file in self.files))
         mode = _mode(metadata)
         packed = f'{metadata.compression_format} per {mode}' if metadata and mode else ''
+        packed = packed or ('zstd per message' if self._packed.found else '')
         return BagFacts(
             storage=' and '.join(sorted({file.storage for file in self.files})),
             version=metadata.version if metadata else None,
@@ -141,26 +148,15 @@ class BagSource:
     def messages(self) -> Iterator[Stored]:
         """Give all messages in the order of their log times."""
         streams = [file.messages() for file in self.files]
-        lost = 0
         size = sum(path.stat().st_size for path in self._paths)
         allowed = Allowance(self.files[0].path, size)
         if len(streams) == 1:
             merged = streams[0]
         else:
             merged = heapq.merge(*streams, key=lambda stored: stored.message.log_time)
-        if not self._packed:
-            yield from merged
-            return
-        for topic, type_name, message in merged:
-            try:
-                plain = replace(message, data=inflate(message.data))
-                allowed.take_bytes(len(plain.data))
-            except Damaged:
-                lost += 1
-                continue
-            yield Stored(topic, type_name, plain)
-        if lost:
-            self._report(f'{self.files[0].path}: {lost} compressed messages are damaged')
+        self._packed = PackedMessages()
+        yield from self._packed.unpack(merged, allowed)
+        self._packed.report(self.files[0].path, self._report)
 
     def disagreements(self) -> list[str]:
         """Sentences on disagreements of metadata and content; a file cut short says nothing."""
@@ -175,16 +171,12 @@ class BagSource:
             if stated.get(key, 0) != counts.get(key, 0)
         ]
 
-    def _check_topics(self) -> None:
-        topics = self.types()
-        if len(topics) > BAG_TOPICS.value:
-            raise BagError(f'{self.files[0].path}: {len(topics)} topics; expected {BAG_TOPICS}')
-        for name in sorted(name for pair in topics for name in pair):
-            if len(name) > NAME.value or not name.isprintable():
-                raise BagError(
-                    f'{self.files[0].path}: a topic or type {one_line(name, 50)!r}; expected a '
-                    f'name of {NAME} that can be printed'
-                )
+    def metadata_faults(self, counts: Mapping[str, int], span: tuple[int, int] | None) -> list[str]:
+        """Hold the metadata against what was read: messages by topic, first and last time (ns)."""
+        if self._metadata is None or self.folder is None:
+            return []
+        storages = {file.storage for file in self.files}
+        return metadata_faults(self.folder, self._metadata, storages, counts, span)
 
     def _counts(self) -> dict[tuple[str, str], int] | None:
         total: dict[tuple[str, str], int] = {}
@@ -195,6 +187,24 @@ class BagSource:
             for key, count in counts.items():
                 total[key] = total.get(key, 0) + count
         return total
+
+
+def check_topics(path: Path, topics: Collection[tuple[str, str]]) -> None:
+    """Check number and names of topics and types.
+
+    Raises
+    ------
+    BagError
+        If they are more or longer than those of any bag.
+    """
+    if len(topics) > BAG_TOPICS.value:
+        raise BagError(f'{path}: {len(topics)} topics; expected {BAG_TOPICS} at most')
+    for name in sorted(name for pair in topics for name in pair):
+        if len(name) > NAME.value or not name.isprintable():
+            raise BagError(
+                f'{path}: a topic or type {one_line(name, 50)!r}; expected a name of {NAME} that '
+                'can be printed'
+            )
 
 
 def open_source(path: Path, report: Report, *, lenient: bool = False) -> BagSource:
@@ -251,6 +261,7 @@ def _by_metadata(path: Path, metadata: BagMetadata, report: Report, lenient: boo
         files = unpacked.plain
     opened = [_open_file(file, report, metadata.stated) for file in files]
     source = BagSource(opened, metadata, report, unpacked)
+    source.folder = path
     for disagreement in source.disagreements():
         if not lenient:
             raise BagError(
@@ -276,10 +287,6 @@ def _metadata(path: Path, report: Report, lenient: bool) -> BagMetadata | None:
 
 def _check_kind(path: Path, metadata: BagMetadata) -> None:
     where = path / FILE_NAME
-    if metadata.storage_identifier not in ('mcap', 'sqlite3'):
-        raise BagError(
-            f'{where}: storage {metadata.storage_identifier!r}; expected mcap or sqlite3'
-        )
     mode = _mode(metadata)
     if mode not in ('', 'file', 'message'):
         raise BagError(f'{where}: compression_mode {mode!r}; expected file, message or none')

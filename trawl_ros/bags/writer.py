@@ -4,6 +4,7 @@ The same messages give the same bytes: nothing of the clock, the machine or the 
 """
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 
@@ -72,7 +73,12 @@ class BagWriter:
             ) from None
         except OSError as reason:
             raise BagError(f'{self.path}: cannot be made ({reason.strerror})') from reason
-        self._file = self._next_file()
+        try:
+            self._file = self._next_file()
+        except BagError:
+            with suppress(OSError):
+                self.path.rmdir()
+            raise
 
     @property
     def counts(self) -> dict[str, int]:

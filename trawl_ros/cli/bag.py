@@ -10,7 +10,7 @@ from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import SUFFIX, repair_bag
 from trawl_ros.bags.sentence_log import SentenceLog, write_sentence_log
 from trawl_ros.cli.bag_tables import check_as_json, info_as_json, print_check, print_info
-from trawl_ros.cli.options import BAG, FOLDER, NAMESPACE_OPTION
+from trawl_ros.cli.options import BAG, FOLDER, NAMESPACE_OPTION, Number
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console
 from trawl_ros.core.errors import BagError
@@ -111,7 +111,7 @@ def check(
 )
 @click.option(
     '--water-density',
-    type=click.FloatRange(900, 1100, min_open=True, max_open=True),
+    type=Number(900, 1100, min_open=True, max_open=True),
     default=1025.0,
     show_default=True,
     help='Density (kg/m3) by which pressures become the depths of sentences.',

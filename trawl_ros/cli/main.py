@@ -13,6 +13,7 @@ import click
 
 from trawl_ros.cli.loaded_group import LoadedGroup
 from trawl_ros.core.errors import TrawlError, sentence_of
+from trawl_ros.core.first_start import need_home
 from trawl_ros.core.version import __version__
 
 COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -54,6 +55,11 @@ class Trawl(LoadedGroup):
             return super().invoke(ctx)
         except TrawlError as error:
             raise click.ClickException(printable(sentence_of(error))) from error
+        except SystemExit as error:
+            # No command of the project ends so; code of other packages, as of an effect, may.
+            if error.code not in (None, 0):
+                raise
+            raise click.ClickException('code of another package ended the command') from error
 
     def main(self, *args: Any, **options: Any) -> Any:
         """Run it all; what the system refuses ends with one sentence and exit code 1.
@@ -106,6 +112,7 @@ def trawl() -> None:
 def main(args: Sequence[str] | None = None) -> None:
     """Run ``trawl``; termination ends it as orderly as Ctrl-C does."""
     signal.signal(signal.SIGTERM, _interrupt)
+    need_home()
     for stream in (sys.stdout, sys.stderr):
         # Names of files may hold bytes that are no text.
         if isinstance(stream, TextIOWrapper):

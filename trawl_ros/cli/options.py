@@ -1,17 +1,35 @@
 """Types of arguments, and options that several commands have."""
 
+import math
 from pathlib import Path
+from typing import Any
 
 import click
 
 from trawl_ros.records.topics import NAMESPACE
+from trawl_ros.records.towing_limits import LIMITS
 
 SCENARIO = click.Path(path_type=Path)
 BAG = click.Path(path_type=Path)
 FILE = click.Path(path_type=Path, dir_okay=False)
 FOLDER = click.Path(path_type=Path, file_okay=False)
-WARP = click.FloatRange(20.0, 3000.0)
-SPEED = click.FloatRange(0.5, 4.0)
+
+
+class Number(click.FloatRange):
+    """Number in a range; NaN, which no comparison finds outside of it, is refused."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Return the number."""
+        number = float(super().convert(value, param, ctx))
+        if math.isnan(number):
+            self.fail('nan is not a number, expected one', param, ctx)
+        return number
+
+
+WARP = Number(*LIMITS.warp_m)
+SPEED = Number(*LIMITS.speed_m_s)
 
 GEAR_OPTION = click.option(
     '--gear', default='kaifuha', show_default=True, help='The gear as the model has it: a file or '

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from trawl_ros.cli.options import FOLDER, FORCE_OPTION
+from trawl_ros.cli.options import FOLDER, FORCE_OPTION, Number
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console, plain_table
 
@@ -22,7 +22,7 @@ class _Numbers(click.ParamType[tuple[float, ...]]):
     name = 'numbers'
 
     def __init__(self, low: float, high: float) -> None:
-        self._one = click.FloatRange(low, high)
+        self._one = Number(low, high)
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -42,7 +42,7 @@ class _Numbers(click.ParamType[tuple[float, ...]]):
     '--hours',
     default=6.0,
     show_default=True,
-    type=click.FloatRange(0.0, 48.0, min_open=True),
+    type=Number(0.0, 48.0, min_open=True),
     help='Time at sea.',
 )
 @click.option('--out', type=FOLDER, help='Folder for plan.json, trial.yaml and plan.png.')
@@ -60,12 +60,12 @@ class _Numbers(click.ParamType[tuple[float, ...]]):
 )
 @click.option(
     '--max-tension-kn',
-    type=click.FloatRange(0.0, 2000.0, min_open=True),
+    type=Number(0.0, 2000.0, min_open=True),
     help='What a warp may be pulled with.',
 )
 @click.option(
     '--seabed-m',
-    type=click.FloatRange(10.0, 11_000.0),
+    type=Number(10.0, 11_000.0),
     help='Depth of the water; the gear stays 10 m above the bottom.',
 )
 @FORCE_OPTION

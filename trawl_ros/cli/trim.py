@@ -8,7 +8,7 @@ import click
 import numpy as np
 from click.core import ParameterSource
 
-from trawl_ros.cli.options import FILE, SPEED, WARP
+from trawl_ros.cli.options import FILE, SPEED, WARP, Number
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.trim_lines import (
     closing_line,
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 KINDS = 'bridles', 'weights', 'floats', 'clump', 'boards'
 """Kinds of changes, those of `trawl_ros.solver.advising.rig_changes`, which is slow to load."""
 
-METRES = click.FloatRange(1.0, 2000.0)
+METRES = Number(1.0, 2000.0)
 
 
 def _kinds(
@@ -44,24 +44,24 @@ def _kinds(
 
 @click.command('trim')
 @click.argument('gear', metavar='GEAR')
-@click.option('--attack', type=click.FloatRange(1.0, 40.0), help='Wanted α, deg.')
+@click.option('--attack', type=Number(1.0, 40.0), help='Wanted α, deg.')
 @click.option(
     '--inclination',
-    type=click.FloatRange(-45.0, 60.0),
+    type=Number(-45.0, 60.0),
     help='Wanted δ, deg; below 0 the boards lean inward.',
 )
 @click.option(
     '--pitch',
     default=0.0,
     show_default=True,
-    type=click.FloatRange(-30.0, 30.0),
+    type=Number(-30.0, 30.0),
     help='Wanted pitch, nose down, deg.',
 )
 @click.option('--spread', type=METRES, help='Door spread, m, from which angles are found.')
 @click.option('--depth', type=METRES, help='Door depth, m, from which angles are found.')
 @click.option(
     '--tension-kn',
-    type=click.FloatRange(0.1, 2000.0),
+    type=Number(0.1, 2000.0),
     help='Tension of a warp measured with them, kN; the model is held against it.',
 )
 @click.option(

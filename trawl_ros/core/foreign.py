@@ -1,5 +1,6 @@
 """Boundary to foreign files: any error of their reading becomes a sentence."""
 
+import json
 import os
 import stat
 from collections.abc import Callable, Iterator
@@ -8,6 +9,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.limits import JSON_BYTES, YAML_NUMBER
 
 
 @contextmanager
@@ -63,6 +65,57 @@ def open_file(path: Path, error: type[TrawlError]) -> BinaryIO:
         os.close(number)
         raise error(f'{path}: not a file but a folder, pipe or device; expected a file')
     return os.fdopen(number, 'rb')
+
+
+def load_json(path: Path, error: type[TrawlError]) -> object:
+    """Load a JSON file within the limits of size, nesting and numbers.
+
+    Raises
+    ------
+    TrawlError
+        Of class ``error``, if it is missing, too large or no JSON, or holds NaN or a number that is
+        too large.
+    """
+    with open_file(path, error) as stream:
+        data = stream.read(JSON_BYTES.value + 1)
+    if len(data) > JSON_BYTES.value:
+        raise error(f'{path}: larger than {JSON_BYTES}, expected a smaller JSON file')
+    try:
+        return parse_json(data)
+    except ValueError as reason:
+        raise error(f'{path}: {short(reason)}, expected JSON') from reason
+
+
+def parse_json(data: bytes) -> object:
+    """Parse JSON within the limits of nesting and numbers.
+
+    Raises
+    ------
+    ValueError
+        If it is none, is nested too deeply, or holds NaN or a number that is too large.
+    """
+    try:
+        return json.loads(
+            data, parse_int=_bounded_int, parse_float=_bounded, parse_constant=_bounded
+        )
+    except RecursionError:
+        raise ValueError('nested too deeply') from None
+
+
+def _bounded(text: str) -> float:
+    value = float(text)
+    if not abs(value) <= YAML_NUMBER.value:
+        raise ValueError(
+            f'found the number {one_line(text, 30)}, expected a finite one of magnitude '
+            f'{YAML_NUMBER.value:.0e} at most'
+        )
+    return value
+
+
+def _bounded_int(text: str) -> int:
+    # Not converted before its size is known: that takes a time that grows with its square.
+    _bounded(text)
+    return int(text)
 
 
 def short(reason: Exception, width: int = 120) -> str:

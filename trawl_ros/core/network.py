@@ -1,6 +1,8 @@
-"""Addresses on which programs of this project listen."""
+"""Addresses and names on which programs of this project listen."""
 
-from ipaddress import ip_address
+import ipaddress
+import socket
+from urllib.parse import urlsplit
 
 THIS_MACHINE = '127.0.0.1'
 """Address that nobody from outside reaches: the default of whatever listens."""
@@ -9,6 +11,46 @@ THIS_MACHINE = '127.0.0.1'
 def is_this_machine(host: str) -> bool:
     """True if nobody from outside reaches an address."""
     try:
-        return ip_address(host).is_loopback
+        return ipaddress.ip_address(host).is_loopback
     except ValueError:
         return host == 'localhost'
+
+
+def is_own_name(text: str, listens_at: str) -> bool:
+    """Return whether ``HOST:PORT`` as a client gives it is an address or a name of this machine.
+
+    A page whose name leads here, though its owner chose the name (DNS rebinding), gives another.
+    """
+    host = _host_of(f'//{text}')
+    own = socket.gethostname().lower()
+    if host in ('localhost', listens_at.lower(), own, f'{own}.local'):
+        return True
+    return _is_address(host)
+
+
+def is_own_origin(origin: str) -> bool:
+    """Return whether an origin, as ``http://localhost:8080``, is a page of this machine."""
+    return is_this_machine(_host_of(origin))
+
+
+def _host_of(url: str) -> str:
+    try:
+        return urlsplit(url).hostname or ''
+    except ValueError:
+        return ''
+
+
+def _is_address(host: str) -> bool:
+    try:
+        ipaddress.ip_address(host)
+    except ValueError:
+        return False
+    return True
+
+
+def free_port() -> int:
+    """Return a TCP port of this machine at which nobody listens."""
+    with socket.socket() as probe:
+        probe.bind((THIS_MACHINE, 0))
+        port: int = probe.getsockname()[1]
+    return port

@@ -1,5 +1,6 @@
 """Look-up of files: as a user names them, or as they come with the package."""
 
+import difflib
 from pathlib import Path
 
 from trawl_ros.core.errors import TrawlError
@@ -93,4 +94,6 @@ def _siblings(path: Path) -> str:
     if not path.parent.is_dir():
         return ''
     names = sorted(entry.name for entry in path.parent.iterdir() if not entry.name.startswith('.'))
+    if near := difflib.get_close_matches(path.name, names, n=1, cutoff=0.8):
+        return f'; did you mean {Path(near[0]).stem}?'
     return f'; there are: {", ".join(names)}' if names else '; the folder is empty'

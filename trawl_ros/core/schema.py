@@ -15,8 +15,8 @@ import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.foreign import reading
-from trawl_ros.core.limits import YAML_BYTES, YAML_DEPTH, YAML_NUMBER, YAML_VALUES
+from trawl_ros.core.foreign import one_line, reading
+from trawl_ros.core.limits import DIAGNOSIS, YAML_BYTES, YAML_DEPTH, YAML_NUMBER, YAML_VALUES
 from trawl_ros.core.validation_messages import shown, validation_messages
 
 MAX_COMPLAINTS = 10
@@ -138,13 +138,15 @@ def validated(
     except ValidationError as reason:
         lines = validation_messages(cls, data, reason.errors(include_url=False), prefix)
         more = len(lines) - MAX_COMPLAINTS
-        messages = [f'{path}: {line}' for line in lines[:MAX_COMPLAINTS]]
+        # A value of the file may stand in it whole.
+        messages = [f'{path}: {one_line(line, DIAGNOSIS.value)}' for line in lines[:MAX_COMPLAINTS]]
         if more > 0:
             messages.append(f'{path}: and {more} more like these')
         raise error('\n'.join(messages)) from reason
 
 
-_SURROGATE = re.compile('[\ud800-\udfff]')
+CONTROL = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]')
+"""Characters that a terminal obeys, or that turn the order of others round, and half ones."""
 
 
 class _Loader(yaml.SafeLoader):
@@ -162,8 +164,8 @@ class _Loader(yaml.SafeLoader):
         if getattr(event, 'tag', None) is not None:
             # `!!int abc` makes constructors fail in ways of their own.
             self._refuse(mark, f'a tag ({event.tag}), expected the value itself')
-        if isinstance(event, yaml.ScalarEvent) and _SURROGATE.search(event.value):
-            self._refuse(mark, 'half a character (\\ud800 to \\udfff), expected text')
+        if isinstance(event, yaml.ScalarEvent) and CONTROL.search(event.value):
+            self._refuse(mark, 'a control character or half a character, expected text')
         self._depth += 1
         self._values += 1
         if self._depth > YAML_DEPTH.value:

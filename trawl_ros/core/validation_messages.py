@@ -65,6 +65,14 @@ _SCALARS = {
 }
 
 
+def _is_consequence(detail: ErrorDetails, errors: list[ErrorDetails]) -> bool:
+    """True for a list that is too short only because entries of it are wrong."""
+    place = detail['loc']
+    return detail['type'] == 'too_short' and any(
+        len(other['loc']) > len(place) and other['loc'][: len(place)] == place for other in errors
+    )
+
+
 def validation_messages(
     cls: type[BaseModel], data: object, errors: list[ErrorDetails], prefix: str = ''
 ) -> list[str]:
@@ -88,6 +96,7 @@ def validation_messages(
     """
     lines: list[str] = []
     explained: set[str] = set()
+    errors = [detail for detail in errors if not _is_consequence(detail, errors)]
     for detail in errors:
         if detail['type'] == 'extra_forbidden':
             line, meant = _unknown_key(cls, data, detail['loc'], prefix)

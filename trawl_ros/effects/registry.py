@@ -62,7 +62,7 @@ def _foreign() -> Iterator[tuple[str, Effect]]:
         where = f'entry point {point.name} = {point.value}'
         try:
             effect = point.load()
-        except Exception as reason:
+        except (Exception, SystemExit) as reason:
             # Whatever a foreign module does when it is imported is not this program's fault.
             raise TrawlError(f'{where}: cannot be loaded ({reason})') from reason
         if not isinstance(effect, Effect):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
-from trawl_ros.gear.numbers import Degrees, NotNegative, Positive, Vector
+from trawl_ros.gear.numbers import Coefficient, Degrees, NotNegative, Positive, Vector
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 SEA = 1025.0
@@ -19,7 +19,7 @@ SEA = 1025.0
 class StartRecord(Record):
     """Prior of the coefficients: start values, spread and bounds in the order of eq. 36."""
 
-    start: tuple[Annotated[float, Field(ge=-10, le=10)], ...]
+    start: tuple[Coefficient, ...]
     std: tuple[Positive, ...]
     low: tuple[float, ...]
     high: tuple[float, ...]
@@ -41,18 +41,18 @@ class StartRecord(Record):
 class CoefficientsRecord(Record):
     """The twelve coefficients of eq. 14, in the order of eq. 36; angles in radians."""
 
-    a1: float
-    c1: float
-    a2: float
-    c2: float
-    b3: float
-    c3: float
-    a4: float
-    c4: float
-    b5: float
-    c5: float
-    a6: float
-    c6: float
+    a1: Coefficient
+    c1: Coefficient
+    a2: Coefficient
+    c2: Coefficient
+    b3: Coefficient
+    c3: Coefficient
+    a4: Coefficient
+    c4: Coefficient
+    b5: Coefficient
+    c5: Coefficient
+    a6: Coefficient
+    c6: Coefficient
 
     def array(self) -> NDArray[np.float64]:
         """Values (12,), in the order of `COEFFICIENTS`."""

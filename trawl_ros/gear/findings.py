@@ -9,6 +9,7 @@ from trawl_ros.gear.boards import plate_inertia
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord, cut_slope
 from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.gear.ropes import RopeRecord
 
 JOIN = 0.15
 """Part by which the stretched circumferences of two joined edges may differ: what a net maker
@@ -16,6 +17,9 @@ gathers."""
 
 CUT = 0.15
 """Part of the meshes lost along a piece by which its counts may differ from its cutting rate."""
+
+LONGEST_BRIDLE_M = 1000.0
+"""m; bridles and sweeps together are some hundred metres long at most."""
 
 STEEL_EA = 4.0e10
 """EA of steel wire rope over its squared diameter, Pa."""
@@ -60,6 +64,8 @@ def _ropes(gear: GearRecord) -> Iterator[GearFinding]:
                 f'found {rope.stiffness_n:.3g} N, expected about {steel:.3g} N for a wire of '
                 f'{1e3 * rope.diameter_m:.3g} mm',
             )
+        elif 0.4 * steel < rope.stiffness_n < 2.5 * steel:
+            yield from _light_wire(key, rope)
         mass = rope.weight_in_water_n_m / 9.81 + 1025.0 * pi / 4 * rope.diameter_m**2
         if mass > 6500.0 * pi / 4 * rope.diameter_m**2:
             yield GearFinding(
@@ -67,6 +73,26 @@ def _ropes(gear: GearRecord) -> Iterator[GearFinding]:
                 f'found {rope.weight_in_water_n_m:g} N/m, more than solid steel of '
                 f'{1e3 * rope.diameter_m:.3g} mm across has in a wire',
             )
+        elif mass < 400.0 * pi / 4 * rope.diameter_m**2:
+            yield GearFinding(
+                f'{key}.weight_in_water_n_m',
+                f'found {rope.weight_in_water_n_m:g} N/m, which lifts more than any fibre of '
+                f'{1e3 * rope.diameter_m:.3g} mm does',
+            )
+
+
+def _light_wire(key: str, rope: RopeRecord) -> Iterator[GearFinding]:
+    """Find the weight of a rope that is as stiff as a wire and much lighter."""
+    usual = 3.1e4 * rope.diameter_m**2
+    found = rope.weight_in_water_n_m
+    if found < 0.5 * usual:
+        in_kilograms = 0.5 < 9.81 * found / usual < 2.0
+        yield GearFinding(
+            f'{key}.weight_in_water_n_m',
+            f'found {found:g} N/m for a rope as stiff as a wire of {1e3 * rope.diameter_m:.3g} mm, '
+            f'expected about {usual:.3g} N/m'
+            + (f' ({found:g} kg/m would be {9.81 * found:.3g} N/m)' if in_kilograms else ''),
+        )
 
 
 def _net(gear: GearRecord) -> Iterator[GearFinding]:
@@ -204,6 +230,12 @@ def _edges(rope: str, length: float, plan: NetPlanRecord) -> Iterator[GearFindin
 
 def _rigging(gear: GearRecord) -> Iterator[GearFinding]:
     long = {own.name: gear.bridle_of(own).length_m for own in gear.bridles}
+    for name, length in long.items():
+        if length > LONGEST_BRIDLE_M:
+            yield GearFinding(
+                f'{name}.length_m' if name == 'bridle' else f'bridles ({name})',
+                f'found {length:g} m, expected at most {LONGEST_BRIDLE_M:g} m',
+            )
     if max(long.values()) > 1.15 * min(long.values()):
         told = ', '.join(f'{name} {length:g} m' for name, length in long.items())
         yield GearFinding('bridles', f'found {told}, expected them within 15 % of each other')

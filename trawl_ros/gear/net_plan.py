@@ -223,6 +223,11 @@ class NetPlanRecord(Record):
                         'all, or upper and lower, with side or with side_upper and side_lower '
                         'between them, each once'
                     )
+                if (around := sum(piece.front_meshes for piece in pieces)) < 1:
+                    raise ValueError(
+                        f"pieces: section '{name}' has {around:g} front_meshes in all its panels, "
+                        'expected 1 or more'
+                    )
                 long = [piece.length for piece in pieces]
                 if max(long) > 1.03 * min(long):
                     raise ValueError(

@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
 from trawl_ros.gear.net_plan import NetPlanRecord
-from trawl_ros.gear.numbers import NotNegative, Positive
+from trawl_ros.gear.numbers import Length, Mesh, NotNegative, Positive
 
 
 class SectionRecord(Record):
@@ -20,10 +20,10 @@ class SectionRecord(Record):
     """
 
     name: str
-    length_m: Positive
-    front_circumference_m: Positive
-    back_circumference_m: Positive
-    mesh_m: Positive
+    length_m: Length
+    front_circumference_m: Length
+    back_circumference_m: Length
+    mesh_m: Mesh
     twine_diameter_m: Annotated[float, Field(gt=0, le=0.1)]
     twine_density_kg_m3: Annotated[float, Field(ge=500, le=8000)]
     twine_modulus_pa: Positive

@@ -6,9 +6,9 @@ from pathlib import Path
 import yaml
 
 from trawl_ros.core.errors import GearError
-from trawl_ros.core.foreign import reading
+from trawl_ros.core.foreign import open_file, reading
 from trawl_ros.core.limits import YAML_BYTES
-from trawl_ros.core.schema import validated
+from trawl_ros.core.schema import CONTROL, validated
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord
 
 TEXT = ('part', 'panel', 'section', 'material', 'knots', 'cut', 'orientation')
@@ -29,12 +29,8 @@ def read_plan(path: Path) -> NetPlanRecord:
     GearError
         Naming file, line and column, what was found and what was expected.
     """
-    if not path.is_file():
-        raise GearError(f'{path}: no such file')
-    try:
-        raw = path.read_bytes()[: YAML_BYTES.value + 1]
-    except OSError as reason:
-        raise GearError(f'{path}: cannot be read ({reason.strerror})') from reason
+    with open_file(path, GearError) as stream:
+        raw = stream.read(YAML_BYTES.value + 1)
     if len(raw) > YAML_BYTES.value:
         raise GearError(f'{path}: larger than {YAML_BYTES}, expected a smaller table')
     try:
@@ -43,6 +39,9 @@ def read_plan(path: Path) -> NetPlanRecord:
         raise GearError(
             f'{path}: byte {reason.start} is not UTF-8, expected a text file'
         ) from reason
+    if control := CONTROL.search(text):
+        line = text.count('\n', 0, control.start()) + 1
+        raise GearError(f'{path}: line {line}: a control character, expected text')
     with reading(path, GearError):
         return _plan(path, text)
 

@@ -42,7 +42,7 @@ class KiteRecord(Record):
     Normal force: ``normal_slope`` per radian of attack, at most ``normal_limit``.
     """
 
-    area_m2: Positive
+    area_m2: Annotated[float, Field(gt=0, le=1000)]
     mass_kg: NotNegative
     volume_m3: NotNegative
     setting_deg: Degrees
@@ -56,7 +56,7 @@ class ClumpRecord(Record):
     """A weight at each lower wing tip."""
 
     weight_in_water_n: NotNegative
-    density_kg_m3: Annotated[float, Field(gt=1100)]
+    density_kg_m3: Annotated[float, Field(gt=1100, le=25_000)]
     drag_area_m2: NotNegative
 
 
@@ -64,7 +64,7 @@ class FloatRecord(Record):
     """Floats at each upper wing tip."""
 
     buoyancy_n: NotNegative
-    density_kg_m3: Annotated[float, Field(gt=0, lt=900)]
+    density_kg_m3: Annotated[float, Field(ge=1, lt=900)]
     drag_area_m2: NotNegative
 
 

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
-from trawl_ros.gear.numbers import NotNegative, Positive, Share
+from trawl_ros.gear.numbers import Length, NotNegative, Share, Stiffness, Weight
 
 ENDS: tuple[Literal['upper'], Literal['lower']] = 'upper', 'lower'
 """Wing tips, and points of a board, that have a bridle in any gear."""
@@ -17,8 +17,8 @@ class OwnMake(Record):
     """Changes of a rope from the make of the bridles."""
 
     diameter_m: Annotated[float, Field(gt=0, le=0.5)] | None = None
-    weight_in_water_n_m: float | None = None
-    stiffness_n: Positive | None = None
+    weight_in_water_n_m: Weight | None = None
+    stiffness_n: Stiffness | None = None
     segments: Annotated[int, Field(ge=2, le=200)] | None = None
 
 
@@ -30,9 +30,9 @@ class SweepRecord(OwnMake):
     given here.
     """
 
-    length_m: Positive
-    upper_backstrop_m: Positive
-    lower_backstrop_m: Positive
+    length_m: Length
+    upper_backstrop_m: Length
+    lower_backstrop_m: Length
 
     @property
     def changes(self) -> dict[str, float]:
@@ -51,7 +51,7 @@ class OwnBridleRecord(OwnMake):
     name: Name
     at_board: Literal['upper', 'lower'] | None = None
     at_net: Literal['upper', 'side', 'lower']
-    length_m: Positive | None = None
+    length_m: Length | None = None
 
     @property
     def changes(self) -> dict[str, float]:

@@ -5,20 +5,20 @@ from typing import Annotated
 from pydantic import Field
 
 from trawl_ros.core.schema import Record
-from trawl_ros.gear.numbers import NotNegative, Positive
+from trawl_ros.gear.numbers import Damping, Drag, Length, Stiffness, Weight
 
 
 class RopeRecord(Record):
     """Rope of one make; ``segments`` is the number of numerical bars it is cut into."""
 
     diameter_m: Annotated[float, Field(gt=0, le=0.5)]
-    weight_in_water_n_m: float
-    stiffness_n: Positive
-    damping_time_s: NotNegative
-    normal_drag: NotNegative
-    tangential_drag: NotNegative
-    added_mass_normal: NotNegative
-    added_mass_tangential: NotNegative
+    weight_in_water_n_m: Weight
+    stiffness_n: Stiffness
+    damping_time_s: Damping
+    normal_drag: Drag
+    tangential_drag: Drag
+    added_mass_normal: Drag
+    added_mass_tangential: Drag
 
 
 class WarpRecord(RopeRecord):
@@ -30,7 +30,7 @@ class WarpRecord(RopeRecord):
 class BridleRecord(RopeRecord):
     """A bridle from a board to a wing tip."""
 
-    length_m: Positive
+    length_m: Length
     segments: Annotated[int, Field(ge=2, le=200)]
 
 
@@ -40,4 +40,4 @@ class FrameRopeRecord(RopeRecord):
     Without a length it is as long as the hanging ratios of the net plan make it.
     """
 
-    length_m: Positive | None = None
+    length_m: Length | None = None

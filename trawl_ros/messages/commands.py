@@ -56,7 +56,8 @@ def read_winch_command(message: Any) -> tuple[float | None, float | None]:
     Raises
     ------
     MessageError
-        If a name is not a winch's, none is there, or a length is not a positive number.
+        If a name is not a winch's, none is there, or a length is not a positive number. A speed or
+        a tension in place of a length is named.
     """
     wanted = joint_column(WINCH_COMMAND, message, 'position')
     unknown = [name for name in wanted if name not in WINCH_NAMES]
@@ -65,6 +66,13 @@ def read_winch_command(message: Any) -> tuple[float | None, float | None]:
             f'{WINCH_COMMAND}: names {list(message.name)}; expected {" and/or ".join(WINCH_NAMES)}'
         )
     for name, length in wanted.items():
+        for field in ('velocity', 'effort') if math.isnan(length) else ():
+            value = joint_column(WINCH_COMMAND, message, field)[name]
+            if not math.isnan(value):
+                raise MessageError(
+                    f'{WINCH_COMMAND}: {field} {value:g} of {name} without a position; winches '
+                    'take a warp length (position, m) and pay out at their own speed'
+                )
         if not (math.isfinite(length) and length > 0):
             raise MessageError(
                 f'{WINCH_COMMAND}: position {length:g} of {name}; expected a warp length above 0 m'

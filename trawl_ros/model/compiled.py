@@ -1,26 +1,25 @@
-"""Compilation of loops, cached beside the module so that only the first start pays for it."""
+"""Compilation of loops, kept in a folder so that only the first start pays for it."""
 
 from collections.abc import Callable
-from pathlib import Path
-from typing import ParamSpec, Protocol, TypeVar, cast
+from contextlib import suppress
+from typing import Any, ParamSpec, Protocol, TypeVar, cast
 
 import numpy as np
-from numba import njit
+from numba import config, njit
+from numba.core import event
+from numba.core.caching import FunctionCache
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.first_start import COMPILATION, loop_folder
 
 Given = ParamSpec('Given')
 Result = TypeVar('Result')
 Returned = TypeVar('Returned', covariant=True)
 
 # Calls from C, which nobody makes, would take a wrapper more.
-OPTIONS = {'cache': True, 'error_model': 'numpy', 'no_cfunc_wrapper': True}
+OPTIONS = {'error_model': 'numpy', 'no_cfunc_wrapper': True}
 
-
-class CompileStats(Protocol):
-    """Statistics of numba: the folder of a function's cache."""
-
-    cache_path: str
+COMPILATION.folder = FOLDER = loop_folder()
 
 
 class Compiled(Protocol[Returned]):
@@ -29,7 +28,6 @@ class Compiled(Protocol[Returned]):
     """
 
     __name__: str
-    stats: CompileStats
 
     def __call__(self, *given: object) -> Returned:
         """Call it."""
@@ -62,13 +60,50 @@ def fused(function: Callable[Given, Result]) -> Compiled[Result]:
 
 def _compiled(function: Callable[Given, Result], **options: object) -> Compiled[Result]:
     # numba's types lack some of the options.
-    return cast(Compiled[Result], njit(**OPTIONS, **options)(function))  # type: ignore[call-overload]
+    loop: Any = njit(**OPTIONS, **options)(function)  # type: ignore[call-overload]
+    if FOLDER.path is not None:
+        settings: Any = config
+        before, settings.CACHE_DIR = settings.CACHE_DIR, str(FOLDER.path)
+        # Where the folder was lost since it was chosen, the loop is compiled at each start.
+        with suppress(RuntimeError):
+            loop._cache = _LoopCache(function)
+        # Other packages keep theirs where they did.
+        settings.CACHE_DIR = before
+    return cast(Compiled[Result], loop)
 
 
-def is_cached(function: Compiled[object]) -> bool:
-    """True if a function was compiled on this machine before, as a rule by the first start."""
-    folder = Path(function.stats.cache_path)
-    return any(folder.glob(f'*.{function.__name__}-*.nbi'))
+class _LoopCache(FunctionCache):
+    """Cache that fails nobody: what is damaged is compiled again, and a full disk keeps nothing."""
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        try:
+            return super().load_overload(sig, target_context)
+        # Whatever a file that was cut short makes of its reading.
+        except Exception:
+            with suppress(OSError):
+                self.flush()
+        return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        with suppress(OSError):
+            super().save_overload(sig, data)
+
+
+class _Steps(event.Listener):
+    """Listener to passes of the compiler, and to loops that are done."""
+
+    def on_start(self, step: Any) -> None:
+        if step.kind == 'numba:compile':
+            COMPILATION.begin()
+        COMPILATION.step()
+
+    def on_end(self, step: Any) -> None:
+        if step.kind == 'numba:compile':
+            COMPILATION.end()
+
+
+for _kind in ('numba:compile', 'numba:run_pass'):
+    event.register(_kind, _Steps())
 
 
 def alike(*arrays: FloatArray) -> list[FloatArray]:

@@ -27,6 +27,7 @@ from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.nodes.runtime.reading import possible_sample
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.records.samples import FixSample, HeadingSample, SchoolsSample, VelocitySample
+from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.scenario.driving import SteerRecord
 
 HEADING = 'vessel/heading'
@@ -79,7 +80,8 @@ class AutopilotNode(TrawlNode):
                live=True),
         Text('track', '', 'YAML file with waypoints, track_m in east and north of map or track_deg '
              'in latitude and longitude.', live=True),
-        Number('speed_m_s', 0.0, 'm/s', 0.0, 4.0, 'Speed through the water to be held; 0 is what '
+        Number('speed_m_s', 0.0, 'm/s', 0.0, LIMITS.speed_m_s[1],
+               'Speed through the water to be held; 0 is what '
                'the log shows at the start.', live=True),
         Number('max_turn_deg_s', math.degrees(DEFAULT.max_turn), 'deg/s', 0.01, 3.0, 'Fastest rate '
                'of turn; the gear must be able to follow.', live=True),

@@ -18,6 +18,7 @@ from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.nodes.runtime.reading import possible_sample
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.records.samples import WinchSample
+from trawl_ros.records.towing_limits import LIMITS
 
 WINCH = 'winch/joint_states'
 OFF = 'off'
@@ -39,9 +40,11 @@ class AutotrawlNode(TrawlNode):
         Text('mode', OFF, 'lengths holds set lengths by the counters; tension holds both warps at '
              'equal tension and gives way to peaks; off sends nothing.',
              choices=('lengths', 'tension', OFF), live=True),
-        Number('port_length_m', 0.0, 'm', 0.0, 3000.0, 'Length to be held on port; in mode tension '
+        Number('port_length_m', 0.0, 'm', 0.0, LIMITS.warp_m[1],
+               'Length to be held on port; in mode tension '
                'the mean of both is. 0 is what the counter shows at the start.', live=True),
-        Number('starboard_length_m', 0.0, 'm', 0.0, 3000.0, 'The same on starboard.', live=True),
+        Number('starboard_length_m', 0.0, 'm', 0.0, LIMITS.warp_m[1],
+               'The same on starboard.', live=True),
         Number('tension_kn', 0.0, 'kN', 0.0, 2000.0, 'Tension of one warp above which is given '
                'way; 0 is the mean of the last minutes.', live=True),
         Number('balance_gain_m_s', DEFAULT.balance_gain, 'm/s', 0.0, 5.0, 'Speed at which warp is '
@@ -82,7 +85,7 @@ class AutotrawlNode(TrawlNode):
         """Return the status of the warps."""
         if self._autotrawl is None:
             mode = self.parameters['mode']
-            message = 'off' if mode == OFF else f'waits for {WINCH}'
+            message = 'off' if mode == OFF else self.with_namespace(f'waits for {WINCH}')
             return [Status('autotrawl', OK if mode == OFF else WARN, message, {'mode': mode})]
         state = self._autotrawl.state()
         values = {

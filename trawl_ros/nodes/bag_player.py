@@ -8,6 +8,7 @@ from rclpy.qos import HistoryPolicy
 
 from trawl_ros.bags.reader import Bag, RawMessage
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.stamps import FAR_NS, lasting, when
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.truth_to_messages import clock_message
@@ -57,6 +58,7 @@ class BagPlayer(TrawlNode):
     )  # fmt: skip
 
     _clock_published = False
+    _far_off = ''
     _latest = 0
 
     def __init__(self, **kwargs: Any) -> None:
@@ -106,20 +108,23 @@ class BagPlayer(TrawlNode):
     def statuses(self) -> list[Status]:
         """Return the status of the replay."""
         missing = [] if self._began else self._consumers.missing()
+        slow = self._consumers.waited_for() if self._held_up else []
         values = {
             'bag': str(self._bag.path),
             'played until': f'{self._latest / 1e9:.1f}',
             'rounds': str(self._rounds),
-            'waits for': ', '.join(missing),
+            'waits for': ', '.join([*missing, *slow]),
         }
         if missing:
             text = f'waits for {", ".join(missing)}, which should report on sync/progress'
-            return [Status('bag', WARN, text, values)]
-        problems = [*self._left_out, *self._bag.problems]
+            return [Status('bag', WARN, self.with_namespace(text), values)]
+        problems = [*filter(None, [self._far_off]), *self._left_out, *self._bag.problems]
         if stalled := self._consumers.stalled():
             problems.append(
                 f'goes on without {", ".join(stalled)}, not getting on for {STALLED_S:g} s'
             )
+        if slow:
+            problems.append(f'waits for {", ".join(slow)}, which gets on too slowly')
         if problems:
             return [Status('bag', WARN, '; '.join(problems), values)]
         if self._paused:
@@ -157,6 +162,7 @@ class BagPlayer(TrawlNode):
         return list(topics)
 
     def _begin(self) -> None:
+        self._held_up = False
         first = self._excerpt.begin()
         self._latest = first.log_time
         self._clocked: int | None = None
@@ -177,16 +183,31 @@ class BagPlayer(TrawlNode):
             self._play(message)
             if monotonic() > end:
                 return
+        self._announce_pause(message)
         if self._excerpt.upcoming is None:
             self._finish_round()
 
     def _may_go_on(self, stamp: int) -> bool:
         lead = round(self.parameters['lead_s'] * SECOND)
         followed = self._consumers.followed(self._latest - lead)
-        if not followed and not self._stand_still(self._consumers.slowest()):
+        self._held_up = not followed and not self._stand_still(self._consumers.slowest())
+        if self._held_up:
             self._pacer.restart()
             return False
         return self._pacer.due(stamp / SECOND)
+
+    def _announce_pause(self, upcoming: RawMessage | None) -> None:
+        """Report a next message that is far off, as after a stamp that cannot be."""
+        rate = self.parameters['rate']
+        wait = upcoming.log_time - self._latest if upcoming and rate else 0
+        far = wait > rate * FAR_NS
+        self._far_off = (
+            f'the next message comes in {lasting(round(wait / rate))}, at '
+            f'{when(self._latest + wait)}; parameter start leaves out what is before it'
+            if far
+            else ''
+        )
+        self.say('next message', WARN if far else OK, self._far_off or 'is near')
 
     def _stand_still(self, slowest: int | None) -> bool:
         """True if consumers have stood still for `QUIET_S`, and none is busy: the rest does not
@@ -231,7 +252,7 @@ class BagPlayer(TrawlNode):
 
     def _end_if_done(self) -> None:
         slowest = self._consumers.slowest()
-        reached = slowest is None or slowest >= self._latest or self._stand_still(slowest)
+        reached = self._consumers.followed(self._latest) or self._stand_still(slowest)
         if reached and self.all_acknowledged(1.0):
             for problem in self._bag.problems:
                 self.get_logger().warning(problem)

@@ -1,10 +1,10 @@
 """`bag_recorder`: writes what is published into a bag, byte by byte."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, ClassVar
+from time import monotonic_ns
+from typing import Any, ClassVar, NamedTuple
 
 from rclpy.qos import QoSProfile
-from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from trawl_ros.bags.storage.mcap_output import COMPRESSIONS
 from trawl_ros.bags.storage.qos import dump_profiles
@@ -14,7 +14,9 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import STORE, type_hash
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.nodes.playback.recorded_qos import asks_too_much, matching, profiles_of
+from trawl_ros.nodes.graph.matching_qos import matching, with_history
+from trawl_ros.nodes.playback.log_time import LogTimes
+from trawl_ros.nodes.playback.recorded_qos import profiles_of
 from trawl_ros.nodes.playback.topic_choice import ALL, TopicChoice
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
 from trawl_ros.nodes.runtime.credit import ConsumerProgress
@@ -38,16 +40,26 @@ Chunks that end early compress less well: at the pace of a ship a bag takes a te
 NO_HASH = 'INVALID'
 
 
+class _Entry(NamedTuple):
+    """Message to be written: full topic name, type, bytes, and stamp (ns) by which time goes on."""
+
+    topic: str
+    type: str
+    data: bytes
+    stamp: int | None
+
+
 class BagRecorder(TrawlNode):
     """Records the project's topics, those that are chosen, or all.
 
     A message is logged at the stamp of its header, so that a bag replays as things happened
-    and not as they arrived; without a header at the time of the node's clock. ``/clock`` is
-    left out: whoever replays the bag makes a new one.
+    and not as they arrived; without a header, or with a stamp that cannot be, at the time of
+    receipt, which is counted. ``/clock`` is left out: whoever replays the bag makes a new one.
     """
 
     SPECS: ClassVar = (
-        Text('output', '', 'Folder of the bag; nothing may be there yet.', needed=True),
+        Text('output', '', 'Folder of the bag; where it exists, a number is put behind its '
+             'name.', needed=True),
         Names('topics', "Topics to record, or 'all'; by default those of the project."),
         Text('regex', '', 'Topics are recorded too whose full name has a match of this regular '
              'expression.'),
@@ -67,6 +79,7 @@ class BagRecorder(TrawlNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('bag_recorder', **kwargs)
         self._by_header = self.parameters['log_time'] == 'header'
+        self._log_times = LogTimes()
         self._latest: dict[str, int] = {}
         self._jumps = 0
         self._unknown: set[str] = set()
@@ -82,7 +95,7 @@ class BagRecorder(TrawlNode):
             {*NEVER, self.full_name(SYNC)},
         )
         self._bag = BagWriter(
-            self.parameters['output'],
+            self.new_path('output') or '',
             namespace=namespace,
             compression=self.parameters['compression'],
             max_file_bytes=self.parameters['max_bag_size'],
@@ -96,13 +109,12 @@ class BagRecorder(TrawlNode):
             absolute(topic.name, namespace): topic.name for topic in TRUTH if topic.rate != 1.0
         }
         self._timed = {absolute(topic.name, namespace) for topic in (*TRUTH, *INSTRUMENTS)}
-        self._profiles: dict[str, QoSProfile] = {}
-        self._types: dict[str, str] = {}
+        self._recorded: set[str] = set()
         for name, topic in project.items():
             if name in self._choice:
                 # Of latched topics, too, all that comes is wanted, and not the last alone.
                 profile = recorder_profile(topic.type)
-                self._record(name, topic.type, matching((), profile) if topic.latched else profile)
+                self._record(name, topic.type, with_history(profile) if topic.latched else profile)
         self.every(FLUSH_S, self._look_after)
 
     def statuses(self) -> list[Status]:
@@ -116,6 +128,11 @@ class BagRecorder(TrawlNode):
             **{f'recorded {topic}': str(count) for topic, count in counts.items()},
         }
         problems = []
+        if replaced := self._log_times.replaced:
+            problems.append(
+                f'{replaced} messages have a stamp that cannot be, and are logged at the time of '
+                'receipt'
+            )
         if self._jumps:
             problems.append(
                 f'time was set back {self._jumps} times, so tows lie over each other in the bag; '
@@ -133,19 +150,14 @@ class BagRecorder(TrawlNode):
 
     def finish_work(self) -> None:
         """Finish the bag."""
+        self._write(self._log_times.give_up(monotonic_ns(), whole=True))
         self._bag.close()
         total = sum(self._bag.counts.values())
         self.get_logger().info(f'{self._bag.path}: {total} messages')
 
     def _record(self, topic: str, type_name: str, profile: QoSProfile) -> None:
-        again = topic in self._types
-        if again:
-            self.stop_listening(topic)
-        taker = self._taker(topic, type_name)
-        # Parameters of a first subscription would be forced upon the second.
-        self.listen_raw(topic, type_name, taker, profile, overridable=not again)
-        self._profiles[topic] = profile
-        self._types[topic] = type_name
+        self.listen_raw(topic, type_name, self._taker(topic, type_name), profile)
+        self._recorded.add(topic)
 
     def _taker(self, topic: str, type_name: str) -> Callable[[bytes], None]:
         timed = topic in self._timed
@@ -154,15 +166,23 @@ class BagRecorder(TrawlNode):
 
         def take(data: bytes) -> None:
             stamp = header_stamp(type_name, data)
-            logged = self.now() if stamp is None or not by_header else stamp
             if not self._bag.declared(topic):
                 self._declare(topic, type_name)
-            self._bag.write(topic, type_name, data, logged)
-            self._dirty = True
-            if timed and stamp is not None:
-                self._follow(topic, stamp)
+            entry = _Entry(topic, type_name, data, stamp if timed else None)
+            if self._by_header:
+                used = stamp if by_header else None
+                self._write(self._log_times.take(used, self.now(), entry))
+            else:
+                self._write([(self.now(), entry)])
 
         return take
+
+    def _write(self, timed: Sequence[tuple[int, '_Entry']]) -> None:
+        for log_time, entry in timed:
+            self._bag.write(entry.topic, entry.type, entry.data, log_time)
+            self._dirty = True
+            if entry.stamp == log_time:
+                self._follow(entry.topic, entry.stamp)
 
     def _declare(self, topic: str, type_name: str) -> None:
         """Fix the definition of a topic, by its publishers when the first message comes."""
@@ -189,16 +209,16 @@ class BagRecorder(TrawlNode):
         return any(name in self._latest for name in self._pacing)
 
     def _look_after(self) -> None:
+        self._write(self._log_times.give_up(monotonic_ns()))
         if self._dirty:
             self._bag.flush()
             self._dirty = False
         self._look_for_others()
-        for topic in list(self._types):
-            self._match(topic, self.get_publishers_info_by_topic(topic))
+        self.match_publishers()
 
     def _look_for_others(self) -> None:
         for topic, types in self.get_topic_names_and_types():
-            if topic in self._types or topic not in self._choice:
+            if topic in self._recorded or topic not in self._choice:
                 continue
             publishers = self.get_publishers_info_by_topic(topic)
             if not publishers:
@@ -206,22 +226,12 @@ class BagRecorder(TrawlNode):
             try:
                 if len(types) != 1 or types[0] not in STORE.types:
                     raise TrawlError(f'{topic}: types {", ".join(types)}')
-                self._record(topic, types[0], matching(publishers, recorder_profile(types[0])))
+                asked = with_history(recorder_profile(types[0]))
+                self._record(topic, types[0], matching(publishers, asked))
             except TrawlError:
                 self._unknown.add(topic)
             else:
                 self._unknown.discard(topic)
-
-    def _match(self, topic: str, publishers: Sequence[TopicEndpointInfo]) -> None:
-        """Request no more QoS than is offered, where a publisher would not be heard otherwise."""
-        asked = self._profiles[topic]
-        heard = matching(publishers, recorder_profile(self._types[topic]))
-        if asks_too_much(asked, heard):
-            self.get_logger().info(
-                f'{topic}: records what its publishers offer, which is {heard.reliability.name} '
-                f'and {heard.durability.name}'.lower()
-            )
-            self._record(topic, self._types[topic], heard)
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -3,10 +3,10 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import empty_folder
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.onset.knowledge import of_identification
@@ -64,7 +64,8 @@ class DiscrepancyNode(TrawlNode):
     SPECS: ClassVar = (
         Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package: the '
              'gear as it is believed.'),
-        Text('output', '', 'Folder for the report, new or empty; none if empty.'),
+        Text('output', '', 'Folder for the report; where it holds files, a number is put behind '
+             'its name; none if empty.'),
         Number('baseline_tows', 0, 'tows', 0, 100, 'So many of the first tows are of a gear in '
                'order.', whole=True),
         Flag('watch', False, 'True if the tow is watched without pause for what begins in it.'),
@@ -79,8 +80,7 @@ class DiscrepancyNode(TrawlNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('discrepancy_node', **kwargs)
         parameters = self.parameters
-        output = parameters['output']
-        self._folder = empty_folder(Path(output), force=False) if output else None
+        self._folder = self.new_path('output', or_empty=True)
         self._gear = load_gear(parameters['gear'])
         self._finder = finder_for(self._gear, window_options(parameters))
         self._windows: list[SteadyWindow] = []
@@ -91,6 +91,7 @@ class DiscrepancyNode(TrawlNode):
         self._instruments = OneSourceEach()
         self._rewinding = Rewinding()
         self._verdict: list[Status] = []
+        self._telling = Lock()
         self._open_book()
         self.advertise(FINDINGS)
         self._watching = WatchingThread(self._look_at, self._publish)
@@ -144,7 +145,8 @@ class DiscrepancyNode(TrawlNode):
         if trouble:
             return [Status('discrepancy', ERROR, trouble, values)]
         if diagnosis is None:
-            return [Status('discrepancy', OK, 'waiting for a steady window', values)]
+            waits = self.with_namespace('waiting for a steady window')
+            return [Status('discrepancy', OK, waits, values)]
         level = OK if diagnosis.verdict in CALM else WARN
         values |= {'verdict': diagnosis.verdict}
         return [Status('discrepancy', level, headline(diagnosis), values)]
@@ -195,8 +197,12 @@ class DiscrepancyNode(TrawlNode):
         self._send_findings()
 
     def _send_findings(self) -> None:
-        told = [onset_status(one, one.number in self._acknowledged) for one in self._newest_told()]
-        self.send(FINDINGS, diagnostic_array(self._reached.stamp, [*self._verdict, *told]))
+        # Two workers and the operator come here; of two messages the newer one must go out last.
+        with self._telling:
+            acknowledged = self._acknowledged
+            told = [onset_status(one, one.number in acknowledged) for one in self._newest_told()]
+            stamp = self._reached.stamp or self.now()
+            self.send(FINDINGS, diagnostic_array(stamp, [*self._verdict, *told]))
 
     def _newest_told(self) -> list[Finding]:
         """Newest findings of what has begun."""
@@ -222,6 +228,9 @@ class DiscrepancyNode(TrawlNode):
 
     def _acknowledge(self) -> str:
         finding = self._newest_finding()
+        if finding.number in self._acknowledged:
+            # Written again and again, it would drive what is older out of the log book.
+            return f'finding {finding.number} is acknowledged already: {finding.sentence()}'
         self._acknowledged.add(finding.number)
         self._log('acknowledged', finding, who=OPERATOR)
         self._send_findings()
@@ -268,7 +277,8 @@ class DiscrepancyNode(TrawlNode):
         """Write the report; return the closing sentence, and True if all windows count."""
         diagnosis, trouble = self._outcome.diagnosis, self._outcome.trouble
         if diagnosis is None:
-            diagnosis = unread(self._gear, (), trouble or 'no steady window has been heard')
+            nothing = self.with_namespace('no steady window has been heard')
+            diagnosis = unread(self._gear, (), trouble or nothing)
         sentence = f'{diagnosis.verdict}: {headline(diagnosis)}'
         if self._folder is not None:
             # Figures bring matplotlib, which the node needs at its end only.

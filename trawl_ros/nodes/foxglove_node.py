@@ -4,16 +4,13 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rclpy.qos import QoSProfile
-
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.network import THIS_MACHINE, is_this_machine
 from trawl_ros.messages.diagnostics import OK, Status
-from trawl_ros.nodes.playback.recorded_qos import asks_too_much, matching
 from trawl_ros.nodes.runtime.incoming import size_limit
 from trawl_ros.nodes.runtime.message_classes import installed
 from trawl_ros.nodes.runtime.node import TrawlNode
-from trawl_ros.nodes.runtime.parameters import Number, Text
+from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import LATCHED, STREAM
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.records.topics import STATIC_TRANSFORMS, TOPICS, Topic
@@ -23,8 +20,6 @@ if TYPE_CHECKING:
 
 LOOK_S = 0.05
 """Time after which a wish of a viewer is granted at the latest."""
-
-MATCH_S = 1.0
 
 
 class FoxgloveNode(TrawlNode):
@@ -38,6 +33,8 @@ class FoxgloveNode(TrawlNode):
         Text('host', THIS_MACHINE, 'Address of this machine at which viewers may connect. Whoever '
              f'reaches another one than {THIS_MACHINE} sees all topics.'),
         Number('port', 8765, 'TCP', 1, 65_535, 'Port at which viewers may connect.', whole=True),
+        Names('origins', 'Origins of web pages that may connect, beside those of this machine.',
+              ('https://app.foxglove.dev', 'file://')),
         Number('backlog', 200, 'messages', 10, 5000, 'Messages that wait for a slow viewer at '
                'most; older ones are given up.', whole=True),
     )  # fmt: skip
@@ -55,7 +52,7 @@ class FoxgloveNode(TrawlNode):
         self._server = self._listen_at(host, port)
         for name, topic in self._topics.items():
             self._server.offer(name, topic.type)
-        self._profiles: dict[str, QoSProfile] = {}
+        self._heard: set[str] = set()
         self._latest: dict[str, tuple[bytes, int]] = {}
         self._passed: Counter[str] = Counter()
         log = self.get_logger()
@@ -63,14 +60,14 @@ class FoxgloveNode(TrawlNode):
         if not is_this_machine(host):
             log.warning(f'parameter host: whoever reaches {host} sees all topics')
         self.every(LOOK_S, self._look)
-        self.every(MATCH_S, self._match)
 
     def statuses(self) -> list[Status]:
         """Return the status of the viewers."""
         viewers = self._server.viewers
         values = {
             'viewers': str(viewers),
-            'topics wanted': str(len(self._profiles)),
+            'topics wanted': str(len(self._heard)),
+            'last refused': self._server.refused,
             'messages passed on': str(self._passed.total()),
             **{f'passed on {topic}': str(count) for topic, count in self._passed.items()},
         }
@@ -86,47 +83,37 @@ class FoxgloveNode(TrawlNode):
             from trawl_ros.nodes.links.websocket import ViewerServer
         except ImportError as reason:
             raise TrawlError(
-                f'foxglove_node needs foxglove-sdk and found no {reason.name}; expected the extra '
+                f'foxglove_node needs websockets and found no {reason.name}; expected the extra '
                 "`view`: pip install 'trawl_ros[view]'"
             ) from reason
         backlog = int(self.parameters['backlog'])
         name = self.get_fully_qualified_name()
-        return ViewerServer(host, port, name, backlog, tells_time=self._simulated)
+        origins = self.parameters['origins']
+        return ViewerServer(host, port, name, backlog, origins, tells_time=self._simulated)
 
     def _look(self) -> None:
         """Listen to what viewers want, and to nothing else."""
         newly = {wish.topic for wish in self._server.new_wishes() if wish.wanted}
         wanted = self._server.wanted
-        for name in self._profiles.keys() - wanted:
+        for name in self._heard - wanted:
             self._leave(name)
             self._latest.pop(name, None)
         for name in newly & self._latest.keys():
             self._server.pass_on(name, *self._latest[name])
-        for name in wanted - self._profiles.keys():
+        for name in wanted - self._heard:
             self._hear(name)
         if self._simulated:
             self._server.tell_time(self.now())
 
-    def _match(self) -> None:
-        """Request no more QoS than is offered, where a publisher would not be heard otherwise."""
-        for name, profile in list(self._profiles.items()):
-            if asks_too_much(profile, self._profile(name)):
-                self._leave(name)
-                self._hear(name)
-
-    def _profile(self, name: str) -> QoSProfile:
-        profile = LATCHED if self._topics[name].latched else STREAM
-        publishers = self.get_publishers_info_by_topic(name)
-        return matching(publishers, profile) if publishers else profile
-
     def _hear(self, name: str) -> None:
         topic = self._topics[name]
-        self._profiles[name] = profile = self._profile(name)
+        self._heard.add(name)
+        profile = LATCHED if topic.latched else STREAM
         self.listen_raw(name, topic.type, self._passer(name, topic), profile, overridable=False)
 
     def _leave(self, name: str) -> None:
         self.stop_listening(name)
-        del self._profiles[name]
+        self._heard.remove(name)
 
     def _passer(self, name: str, topic: Topic) -> Callable[[bytes], None]:
         limit = size_limit(topic.type)

@@ -6,8 +6,12 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, ClassVar
 
-from trawl_ros.core.files import empty_folder
-from trawl_ros.estimation.checkpoint.file import load_checkpoint, save_checkpoint
+from trawl_ros.core.files import is_there
+from trawl_ros.estimation.checkpoint.file import (
+    CheckpointError,
+    load_checkpoint,
+    save_checkpoint,
+)
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.from_gear import (
     board_prior,
@@ -77,8 +81,8 @@ class IdentificationNode(TrawlNode):
              'always do.'),
         Flag('net', False, 'Whether drag and weight of the net are estimated along; else they are '
              'held as the gear file has them.'),
-        Text('output', '', 'Folder for identification.json and figures, new or empty; none if '
-             'empty.'),
+        Text('output', '', 'Folder for identification.json and figures; where it holds files, a '
+             'number is put behind its name; none if empty.'),
         Text('state', '', 'File that takes the state after each window, and from which a node that '
              'is started anew goes on; none if empty.'),
         Flag('motion', True, 'True if all of the tow is learned from, hauling and veering too, '
@@ -93,8 +97,8 @@ class IdentificationNode(TrawlNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('identification_node', **kwargs)
         parameters = self.parameters
-        output, truth, state = parameters['output'], parameters['truth'], parameters['state']
-        folder = empty_folder(Path(output), force=False) if output else None
+        truth, state = parameters['truth'], parameters['state']
+        folder = self.new_path('output', or_empty=True)
         known = true_coefficients(truth) if truth else None
         self._state = Path(state) if state else None
         self._gear = load_gear(parameters['gear'])
@@ -161,7 +165,7 @@ class IdentificationNode(TrawlNode):
                 prior=self.parameters['prior'], net=self.parameters['net']
             ),
         )
-        if self._state is None or not self._state.exists():
+        if self._state is None or not is_there(self._state, CheckpointError):
             return fresh
         resumed = load_checkpoint(self._state, fresh, self._gear)
         self.get_logger().info(
@@ -195,7 +199,7 @@ class IdentificationNode(TrawlNode):
         elif trouble := outcome.troubles.get('estimating'):
             level, message = ERROR, trouble
         elif outcome.why_not is not None:
-            level, message = WARN, outcome.why_not
+            level, message = WARN, self.with_namespace(outcome.why_not)
         return Status('estimate', level, message, values)
 
     def _about_state(self, outcome: EstimatorOutcome) -> list[Status]:
@@ -275,25 +279,26 @@ class IdentificationNode(TrawlNode):
                 statuses.append(advice_status(advice, trouble))
                 knowledge = replace(knowledge_of(advice, windows), trouble=trouble)
                 statuses.append(knowledge_status(knowledge))
-            stamp = outcome.told.stamp if outcome.told else outcome.stamp
+            stamp = outcome.told.stamp if outcome.told else outcome.stamp or self.now()
             self.send(STATUS, diagnostic_array(stamp, statuses))
 
     async def _finish(self, request: Any, response: Any) -> Any:
         wish = self._worker.finish()
         await wish
         response.success = not wish.outcome.failed
-        response.message = wish.outcome.finished or ''
-        self._tell(wish.outcome)
+        response.message = self._tell(wish.outcome)
         return response
 
-    def _tell(self, outcome: EstimatorOutcome) -> None:
-        if outcome.finished is None:
-            return
+    def _tell(self, outcome: EstimatorOutcome) -> str:
+        """Log the sentence with which an identification ends, and return it."""
+        finished = outcome.finished or ''
         # A logger refuses another severity from the same line.
-        if outcome.failed:
-            self.get_logger().warning(outcome.finished)
-        else:
-            self.get_logger().info(outcome.finished)
+        if finished and outcome.failed:
+            finished = self.with_namespace(finished)
+            self.get_logger().warning(finished)
+        elif finished:
+            self.get_logger().info(finished)
+        return finished
 
 
 def _ranking(advice: Advice | None) -> tuple[object, ...]:

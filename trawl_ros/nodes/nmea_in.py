@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from trawl_ros.control.set_points import SetPointGuard, SetPointLimits
 from trawl_ros.core.errors import MessageError, SentenceError
+from trawl_ros.core.stamps import impossible_time
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.commands import (
     VESSEL_COMMAND,
@@ -18,6 +19,7 @@ from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.nodes.links.channels import parse_link
 from trawl_ros.nodes.links.threads import LineSource
+from trawl_ros.nodes.runtime.incoming import error_of_program
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
@@ -26,6 +28,7 @@ from trawl_ros.nodes.runtime.run import run
 from trawl_ros.records.fields import FIELDS, WaterColumn
 from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample, WinchSample
+from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.sentences.assembly import SampleAssembly
 from trawl_ros.sentences.codec import SentenceReader, Spoken
 from trawl_ros.sentences.framing import Foreign, Frame, Unreadable, parse_line
@@ -69,11 +72,14 @@ class NmeaIn(TrawlNode):
              'command/winch and command/vessel.'),
         Number('command_timeout_s', 10.0, 's', 0.5, 600.0, 'Silence of set points after which the '
                'winches are told to hold.'),
-        Number('min_length_m', 50.0, 'm', 0.0, 5000.0, 'Least warp that a set point may want.'),
-        Number('max_length_m', 2000.0, 'm', 0.0, 5000.0, 'Most warp that a set point may want.'),
+        Number('min_length_m', 50.0, 'm', 0.0, LIMITS.warp_m[1],
+               'Least warp that a set point may want.'),
+        Number('max_length_m', 2000.0, 'm', 0.0, LIMITS.warp_m[1],
+               'Most warp that a set point may want.'),
         Number('max_step_m', 50.0, 'm', 0.1, 5000.0, 'Furthest that a set point may be from the '
                'counter.'),
-        Number('max_speed_m_s', 4.0, 'm/s', 0.0, 10.0, 'Fastest ship that a set point may want.'),
+        Number('max_speed_m_s', 4.0, 'm/s', 0.0, LIMITS.speed_m_s[1],
+               'Fastest ship that a set point may want.'),
         Number('max_turn_rad_s', 0.02, 'rad/s', 0.0, 0.2, 'Fastest turn that a set point may '
                'want.'),
     )  # fmt: skip
@@ -99,6 +105,7 @@ class NmeaIn(TrawlNode):
         )
         self._held = 0
         self._clocks: dict[str, LinkClock] = {}
+        self._tag_clocks: dict[str, LinkClock] = {}
         topics = {topic for row in self._reader.rows.values() for topic in row.topics}
         for topic in sorted(topics & FIELDS.keys()):
             self.advertise(topic)
@@ -153,7 +160,7 @@ class NmeaIn(TrawlNode):
             'lines too long': str(source.too_long),
             'opened': str(source.opened),
         }
-        problems = [source.state] if source.state else []
+        problems = [text for text in (source.state, source.turned_away) if text]
         if source.lost:
             problems.append(f'{source.lost} lines came faster than they can be read')
         message = '; '.join(problems) or 'open'
@@ -168,6 +175,9 @@ class NmeaIn(TrawlNode):
                     self._tally.foreign += 1
                 except Unreadable as reason:
                     self._tally.refuse(str(reason), line)
+                except Exception as reason:
+                    # It costs its line, and not those that came with it.
+                    self._tally.refuse(error_of_program(reason), line)
         if self.parameters['time'] == ARRIVAL:
             self._publish(self._assembly.flush(self.now() - WAIT_NS))
         if (held := self._guard.silence(time.monotonic_ns())) is not None:
@@ -182,9 +192,8 @@ class NmeaIn(TrawlNode):
         if row.is_clock:
             if spoken.time is not None and (said := spoken.time.stamp(None)) is not None:
                 # The newest stands last, for links that have no clock of their own.
-                clock = self._clocks.pop(link, None) or LinkClock()
-                clock.hear(said, time.monotonic_ns())
-                self._clocks[link] = clock
+                self._believe(said, link, self._clocks)
+                self._clocks[link] = self._clocks.pop(link)
             self._tally.understood += 1
             return
         if not row.topics:
@@ -206,6 +215,7 @@ class NmeaIn(TrawlNode):
         if self.parameters['time'] == ARRIVAL:
             return self.now()
         if frame.tag_time is not None:
+            self._believe(frame.tag_time, link, self._tag_clocks)
             return frame.tag_time
         clock = self._clocks.get(link) or next(reversed(self._clocks.values()), None)
         if clock and (stamp := clock.stamp(time.monotonic_ns())) is not None:
@@ -213,7 +223,16 @@ class NmeaIn(TrawlNode):
         own = spoken.time.stamp(None) if spoken.time else None
         if own is None:
             raise Unreadable('a reading before the first time with a date')
+        self._believe(own, f'{link} {spoken.system}', self._tag_clocks)
         return own
+
+    @staticmethod
+    def _believe(stamp: int, source: str, clocks: dict[str, LinkClock]) -> None:
+        """Take the time (ns) that a source says, unless it cannot be, or leaps for a moment."""
+        if why := impossible_time(stamp):
+            raise Unreadable(f'a time that cannot be: {why}')
+        if not clocks.setdefault(source, LinkClock()).hear(stamp, time.monotonic_ns()):
+            raise Unreadable('a time that leaps, and only for a moment')
 
     def _publish(self, samples: Sequence[Sample]) -> None:
         for sample in samples:

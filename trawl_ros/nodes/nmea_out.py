@@ -73,8 +73,8 @@ class NmeaOut(TrawlNode):
                 'sentences given up': str(sink.lost),
                 'opened': str(sink.opened),
             }
-            message = sink.state or 'sends'
-            level = WARN if sink.state else OK
+            problem = '; '.join(text for text in (sink.state, sink.turned_away) if text)
+            level, message = (WARN, problem) if problem else (OK, 'sends')
             found.append(Status(f'link {sink.address.text}', level, message, values))
         return found
 

@@ -12,9 +12,9 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.commands import VESSEL_COMMAND, WINCH_COMMAND
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
+from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
-from trawl_ros.model.bar_pass import add_bar_blocks
-from trawl_ros.model.compiled import is_cached
+from trawl_ros.nodes.command_watch import CommandWatch
 from trawl_ros.nodes.runtime.credit import SILENT_S, STALLED_S, Consumers
 from trawl_ros.nodes.runtime.message_classes import installed
 from trawl_ros.nodes.runtime.node import TrawlNode
@@ -22,7 +22,7 @@ from trawl_ros.nodes.runtime.pacer import Pacer
 from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.tow_commands import LENGTHS, SPEEDS, wanted_lengths, wanted_motion
+from trawl_ros.nodes.tow_commands import wanted_lengths, wanted_motion
 from trawl_ros.nodes.towing import (
     DEFAULT_START,
     CommandedTow,
@@ -31,12 +31,14 @@ from trawl_ros.nodes.towing import (
     fallen_sides,
 )
 from trawl_ros.records.topics import CLOCK, TRANSFORMS, TRUTH
+from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
 
 GEAR_MARKERS = 'truth/gear'
+WHEN_SILENT = {VESSEL_COMMAND: 'the ship steers straight on', WINCH_COMMAND: 'the winches stop'}
 BURST_S = 0.02
 """Wall time for which other callbacks may have to wait."""
 
@@ -58,9 +60,9 @@ class SimNode(TrawlNode):
         Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package.'),
         Text('scenario', '', 'Scenario file or name: its gear, start, commands and end are used.'),
         Flag('exit_at_end', False, 'Whether to end with the scenario.'),
-        Number('warp_length_m', DEFAULT_START[0], 'm', *LENGTHS,
+        Number('warp_length_m', DEFAULT_START[0], 'm', *LIMITS.warp_m,
                'Length of both warps at the start.'),
-        Number('speed_m_s', DEFAULT_START[1], 'm/s', *SPEEDS,
+        Number('speed_m_s', DEFAULT_START[1], 'm/s', *LIMITS.speed_m_s,
                'Speed through the water at the start.'),
         Number('heading_deg', 0.0, 'deg', -360.0, 360.0, 'First heading as ENU yaw.'),
         Number(
@@ -76,6 +78,12 @@ class SimNode(TrawlNode):
         Names('wait_for', 'Consumers (node names) without which the tow does not start.'),
         Number('lead_s', 3.0, 's', 1.0, 8.0, 'Simulated time that the slowest consumer may lag '
                'behind.', live=True),
+        Number('command_timeout_s', 0.0, 's', 0.0, 3600.0, 'Simulated time without a '
+               'command/vessel after which the ship steers straight on, and without a '
+               'command/winch after which the winches stop; 0 is never.', live=True),
+        Number('max_command_age_s', 0.0, 's', 0.0, 1e6, 'Largest difference between the stamp of a '
+               'command and the time of this node; others are refused; 0 takes any stamp.',
+               live=True),
     )  # fmt: skip
 
     _clock_published = False
@@ -97,8 +105,6 @@ class SimNode(TrawlNode):
             self.advertise(TRANSFORMS.name)
         self._consumers = Consumers(self, self.parameters['wait_for'])
         self._pacer = Pacer(self.parameters['time_scale'])
-        if not is_cached(add_bar_blocks):
-            self.get_logger().info('compiles the model, once on this machine: half a minute')
         self._tow, self._period = self._prepare()
         self._problem: str | None = None
         self._paused = False
@@ -139,7 +145,7 @@ class SimNode(TrawlNode):
             'wanted starboard warp': f'{command.starboard_length:g}',
             'wanted speed': f'{command.speed:g}',
             'wanted rate of turn': f'{command.turn_rate:g}',
-            'waits for': ', '.join(missing),
+            'waits for': ', '.join([*missing, *self._consumers.waited_for()]),
             'fallen boards': fallen_sides(self._tow.simulation),
         }
         if self._scenario is not None:
@@ -154,12 +160,20 @@ class SimNode(TrawlNode):
         if missing and self._started:
             return WARN, f'goes on without {", ".join(missing)}, silent for {SILENT_S:g} s'
         if missing:
-            return WARN, f'waits for {", ".join(missing)}, which should report on sync/progress'
+            names = ', '.join(missing)
+            reason = f'waits for {names}, which should report on sync/progress'
+            return WARN, self.with_namespace(reason)
         if stalled := self._consumers.stalled():
             names = ', '.join(stalled)
             return WARN, f'goes on without {names}, not getting on for {STALLED_S:g} s'
+        if slow := self._consumers.waited_for():
+            return WARN, f'waits for {", ".join(slow)}, which gets on too slowly'
         if fallen := fallen_sides(self._tow.simulation):
             return WARN, f'board fallen: {fallen}; towed on, expected more speed or less warp'
+        if lapsed := [topic for topic, watch in self._watches.items() if watch.lapsed]:
+            timeout = self.parameters['command_timeout_s']
+            done = ' and '.join(WHEN_SILENT[topic] for topic in lapsed)
+            return WARN, f'{" and ".join(lapsed)} silent for {timeout:g} s: {done}'
         if self._paused:
             return OK, 'paused'
         if self._pacer.lost_s > 0.0:
@@ -190,6 +204,7 @@ class SimNode(TrawlNode):
         return tow, round(SECOND / rate)
 
     def _begin(self) -> None:
+        self._watches = {topic: CommandWatch(topic) for topic in (VESSEL_COMMAND, WINCH_COMMAND)}
         self._offset: int | None = None
         self._latest = 0
         self._next_s = 0.0
@@ -232,6 +247,7 @@ class SimNode(TrawlNode):
         return self._consumers.followed(self._latest + self._period - lead)
 
     def _go_on(self) -> None:
+        self._watch_commands()
         try:
             truth = self._tow.step()
         except TrawlError as reason:
@@ -282,16 +298,34 @@ class SimNode(TrawlNode):
 
     def _command_winches(self, message: Any) -> None:
         wanted = wanted_lengths(message)
-        self._commanded(WINCH_COMMAND).command_winches(*wanted)
+        self._commanded(WINCH_COMMAND, message).command_winches(*wanted)
+        if any(message.velocity):
+            self.say(
+                f'velocity of {WINCH_COMMAND}', WARN, 'not used: winches pay out at their own speed'
+            )
 
     def _command_vessel(self, message: Any) -> None:
         wanted = wanted_motion(message)
-        self._commanded(VESSEL_COMMAND).command_vessel(*wanted)
+        self._commanded(VESSEL_COMMAND, message).command_vessel(*wanted)
 
-    def _commanded(self, topic: str) -> CommandedTow:
-        if isinstance(self._tow, CommandedTow):
-            return self._tow
-        raise MessageError(f'{topic}: the scenario is in command; expected no command beside it')
+    def _commanded(self, topic: str, message: Any) -> CommandedTow:
+        tow = self._tow
+        if not isinstance(tow, CommandedTow):
+            raise MessageError(
+                f'{topic}: the scenario is in command; expected no command beside it'
+            )
+        most = self.parameters['max_command_age_s']
+        self._watches[topic].take(stamp_of(message), self.now(), tow.time_s, most)
+        return tow
+
+    def _watch_commands(self) -> None:
+        tow, timeout = self._tow, self.parameters['command_timeout_s']
+        if not isinstance(tow, CommandedTow):
+            return
+        if self._watches[VESSEL_COMMAND].lapses(tow.time_s, timeout):
+            tow.stop_turning()
+        if self._watches[WINCH_COMMAND].lapses(tow.time_s, timeout):
+            tow.stop_winches()
 
     def _reset(self) -> str:
         self._tow.reset()

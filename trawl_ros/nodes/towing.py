@@ -109,6 +109,16 @@ class CommandedTow:
         """Command a speed through the water (m/s) and a rate of turn (rad/s, to port)."""
         self.simulation.command = replace(self.simulation.command, speed=speed, turn_rate=turn_rate)
 
+    def stop_winches(self) -> None:
+        """Stop the winches where they are."""
+        self.command_winches(*self.simulation.stop_lengths())
+
+    def stop_turning(self) -> None:
+        """Steer straight on at the speed that was commanded last; a ship that stops loses her gear
+        on the seabed.
+        """
+        self.simulation.command = replace(self.simulation.command, turn_rate=0.0)
+
     def reset(self) -> None:
         """Return to the start."""
         self.simulation.reset()

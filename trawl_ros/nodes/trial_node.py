@@ -13,6 +13,7 @@ from trawl_ros.control.trial.machine import Trial
 from trawl_ros.control.trial.memory import TrialMemory, load_memory, save_memory
 from trawl_ros.control.trial.records import TrialCommand, TrialSettings, TrialState
 from trawl_ros.core.errors import MessageError, TrawlError
+from trawl_ros.core.files import is_there
 from trawl_ros.core.time import SECOND
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.commands import (
@@ -90,7 +91,7 @@ class TrialNode(TrawlNode):
         self._gear = gear
         state = self.parameters['state']
         self._file = Path(state) if state else None
-        self._trouble = ''
+        self._trouble = self._obeyed = ''
         memory = self._resumed()
         self._trial = Trial(self._settings(), build_water(gear).depth, memory)
         self._saved = memory
@@ -136,7 +137,7 @@ class TrialNode(TrawlNode):
         return trial_settings(self.parameters, self._gear)
 
     def _resumed(self) -> TrialMemory | None:
-        if self._file is None or not self._file.exists():
+        if self._file is None or not is_there(self._file, TrawlError):
             return None
         memory = load_memory(self._file)
         self.get_logger().info(
@@ -180,7 +181,10 @@ class TrialNode(TrawlNode):
 
     def _obey(self, act: Callable[[], str]) -> str:
         sentence = act()
-        self.get_logger().info(sentence)
+        # Whoever calls often would fill the log.
+        if sentence != self._obeyed:
+            self._obeyed = sentence
+            self.get_logger().info(sentence)
         self._updated = 0
         self._update(self._time())
         return sentence

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 LOOK_S = 0.5
 
 
-def open_view(parameters: Any) -> 'LiveView':
+def open_view(parameters: Any, output: Path | None) -> 'LiveView':
     """Open what shows the records.
 
     Raises
@@ -30,14 +30,13 @@ def open_view(parameters: Any) -> 'LiveView':
     """
     from trawl_ros.view.live import LiveView
 
-    output = parameters['output']
     return LiveView(
         TOPICS,
         parameters['viewer'],
         bind=parameters['host'],
         port=int(parameters['port']) or None,
         memory_mb=int(parameters['memory_mb']),
-        output=Path(output) if output else None,
+        output=output,
     )
 
 
@@ -50,8 +49,8 @@ class ViewNode(TrawlNode):
     SPECS: ClassVar = (
         Text('viewer', 'window', 'A window, a web page of this machine, or neither.',
              choices=('window', 'web', 'headless')),
-        Text('output', '', 'File (.rrd) to be recorded in place of a viewer; nothing may be there '
-             'yet.'),
+        Text('output', '', 'File (.rrd) to be recorded in place of a viewer; where it exists, a '
+             'number is put behind its name.'),
         Text('host', THIS_MACHINE, 'Address at which the viewer listens. Whoever reaches another '
              f'one than {THIS_MACHINE} sees the tow and can add to it.'),
         Number('port', 0, 'TCP', 0, 65_534, 'Of the web page, whose data are at the next one; 0 '
@@ -65,7 +64,7 @@ class ViewNode(TrawlNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('view_node', **kwargs)
         self._reader = TowReader(load_gear(self.parameters['gear']))
-        self._view = open_view(self.parameters)
+        self._view = open_view(self.parameters, self.new_path('output', suffix='.rrd'))
         if self._view.page:
             self.get_logger().info(f'{self._view.page} shows it')
         if not is_this_machine(host := self.parameters['host']):

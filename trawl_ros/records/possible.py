@@ -15,7 +15,11 @@ from trawl_ros.records.samples import (
 
 DEEPEST_M = 12_000.0
 FASTEST_M_S = 60.0
+LEAST_PA = 5e3
+"""Absolute pressure is more even in thin air; gauge pressure begins at 0."""
 MOST_PA = 1.3e8
+LEAST_N = -5e4
+"""Zero error of a load cell."""
 MOST_N = 1e7
 COMPASS_DEG = (-180.0, 360.0)
 """Loggers write compass angles from 0 to 360 or from -180 to 180."""
@@ -48,14 +52,15 @@ def _bounded(sample: Sample) -> Iterator[tuple[str, float, float, float, str]]:
             for component in sample.velocity:
                 yield 'speed', abs(float(component)), 0.0, FASTEST_M_S, 'm/s'
         case RangeSample():
-            yield 'distance', sample.distance, -DEEPEST_M, DEEPEST_M, 'm'
+            least = -100.0 if sample.what == 'depth' else 0.0
+            yield 'distance', sample.distance, least, DEEPEST_M, 'm'
         case PressureSample():
-            yield 'pressure', sample.pressure, -MOST_PA, MOST_PA, 'Pa'
+            yield 'absolute pressure', sample.pressure, LEAST_PA, MOST_PA, 'Pa'
         case AttitudeSample():
-            for quantity, value in (('pitch', sample.pitch), ('roll', sample.roll)):
-                yield quantity, math.degrees(value), -360.0, 360.0, 'degrees'
+            yield 'pitch', math.degrees(sample.pitch), -90.0, 90.0, 'degrees'
+            yield 'roll', math.degrees(sample.roll), -180.0, 180.0, 'degrees'
         case WinchSample():
             for length in sample.lengths:
-                yield 'warp length', length, -DEEPEST_M, DEEPEST_M, 'm'
+                yield 'warp length', length, -100.0, DEEPEST_M, 'm'
             for tension in sample.tensions:
-                yield 'tension', tension, -MOST_N, MOST_N, 'N'
+                yield 'tension', tension, LEAST_N, MOST_N, 'N'

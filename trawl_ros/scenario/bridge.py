@@ -3,6 +3,8 @@
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from trawl_ros.control.autopilot import Autopilot, AutopilotSettings
 from trawl_ros.control.autotrawl import Autotrawl
 from trawl_ros.core.geodesy import Datum
@@ -17,6 +19,7 @@ from trawl_ros.records.samples import (
     VelocitySample,
     WinchSample,
 )
+from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.driving import AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.scenario import Scenario
@@ -72,7 +75,7 @@ class Bridge:
             planned = replace(planned, turn_rate=self._turn_rate)
         if self._autotrawl is not None:
             self._autotrawl.set_lengths(planned.port_length, planned.starboard_length)
-            port, starboard = self._autotrawl.wanted
+            port, starboard = np.clip(self._autotrawl.wanted, *LIMITS.warp_m).tolist()
             planned = replace(planned, port_length=port, starboard_length=starboard)
         self._given = planned
         return planned

@@ -7,12 +7,13 @@ from pydantic import Field, model_validator
 from trawl_ros.core.schema import Record
 from trawl_ros.gear.records import EffectRecord
 from trawl_ros.gear.sea_water import CurrentAt, TemperatureAt
+from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.scenario.driving import AutotrawlRecord, SteerRecord
 from trawl_ros.scenario.faults import FaultRecord
 from trawl_ros.scenario.sea import SeaRecord
 
-Length = Annotated[float, Field(gt=0, lt=3000)]
-Speed = Annotated[float, Field(ge=0.5, le=4)]
+Length = Annotated[float, Field(ge=LIMITS.warp_m[0], le=LIMITS.warp_m[1])]
+Speed = Annotated[float, Field(ge=LIMITS.speed_m_s[0], le=LIMITS.speed_m_s[1])]
 Factor = Annotated[int, Field(ge=1, le=8)]
 NetFactor = Annotated[float, Field(ge=1, le=8)]
 Name = Annotated[str, Field(min_length=1, max_length=100)]
@@ -65,7 +66,7 @@ class StepRecord(Record):
     port_warp_length_m: Length | None = None
     starboard_warp_length_m: Length | None = None
     speed_m_s: Speed | None = None
-    turn_deg_s: Annotated[float, Field(ge=-3, le=3)] | None = None
+    turn_deg_s: Annotated[float, Field(ge=-LIMITS.turn_deg_s, le=LIMITS.turn_deg_s)] | None = None
     steer: SteerRecord | None = None
     autotrawl: AutotrawlRecord | None = None
 
@@ -166,4 +167,10 @@ class ScenarioRecord(Record):
             raise ValueError(
                 f'steps: found {minutes:g} minutes in all, expected at most {60 * MAX_HOURS}'
             )
+        for number, fault in enumerate(self.faults):
+            if fault.at_min >= minutes:
+                raise ValueError(
+                    f'faults[{number}].at_min: found {fault.at_min:g}, expected less than the '
+                    f'{minutes:g} minutes of all steps'
+                )
         return self

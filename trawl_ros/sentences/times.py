@@ -12,6 +12,8 @@ DAY = 86_400 * SECOND
 _TIME = re.compile(r'(\d\d):?(\d\d):?(\d\d)(?:\.(\d{1,9}))?')
 _EPOCH = date(1970, 1, 1)
 NOT_A_TIME = 'a field that is no time'
+YEARS = range(1970, 2038)
+"""Years that can be: stamps of messages count seconds in 32 bits."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,8 @@ def read_day(parts: Sequence[tuple[str, str]]) -> date | None:
     year = numbers['y']
     # As POSIX has it: 69 and above belong to the last century.
     year += 0 if year >= 100 else 1900 if year >= 69 else 2000
+    if year not in YEARS:
+        raise ValueError('a year that cannot be')
     try:
         return date(year, numbers['m'], numbers['d'])
     except ValueError:

@@ -2,11 +2,19 @@
 
 from dataclasses import dataclass
 
+from trawl_ros.core.errors import ScenarioError
+from trawl_ros.records.towing_limits import LIMITS
+
 
 @dataclass(frozen=True)
 class Command:
     """Command to ship and winches: warp lengths (m), speed through the water (m/s),
     rate of turn (rad/s, to port positive).
+
+    Raises
+    ------
+    ScenarioError
+        If one of them is beyond the limits of a tow, or NaN.
 
     Examples
     --------
@@ -19,3 +27,8 @@ class Command:
     starboard_length: float
     speed: float
     turn_rate: float = 0.0
+
+    def __post_init__(self) -> None:
+        lengths = self.port_length, self.starboard_length
+        if objection := LIMITS.objection(lengths, self.speed, self.turn_rate):
+            raise ScenarioError(objection)

@@ -17,10 +17,12 @@ from trawl_ros.model.observables import (
 from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
 from trawl_ros.records.observables import Observables
+from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.solver.cold_start import cold_start
 from trawl_ros.solver.first_guess import at_velocity, shifted_to
 from trawl_ros.solver.growing_mode import growing_mode
 from trawl_ros.solver.last_state import followed
+from trawl_ros.solver.linear.search_budget import budgeted
 from trawl_ros.solver.operating_point import OperatingPoint, remedy_command, steady_tow
 from trawl_ros.solver.relax import (
     DRIFT_LIMIT,
@@ -73,6 +75,7 @@ class Equilibrium:
         return self.highest > 0.0
 
 
+@budgeted
 def find_equilibrium(
     model: GearModel,
     point: OperatingPoint,
@@ -231,8 +234,8 @@ def steady_state(
     Raises
     ------
     NoSteadyState
-        There is none, it is unstable, the gear breaks the surface, or a board works outside
-        the range of its law.
+        There is none, it is unstable, the gear breaks the surface, a board works outside
+        the range of its law, or warps or speed are beyond `LIMITS`.
 
     Examples
     --------
@@ -243,10 +246,13 @@ def steady_state(
     156 m apart, 138 m deep
     """
     port, starboard = map(float, np.broadcast_to(np.asarray(warp_length, float), 2))
+    if objection := LIMITS.objection((port, starboard), speed):
+        raise NoSteadyState(objection)
     model, point = with_effects(model, (port, starboard), speed, heading)
     return find_usable(model, point, start, near)
 
 
+@budgeted
 def find_usable(
     model: GearModel,
     point: OperatingPoint,

@@ -26,6 +26,9 @@ KEEP_RATE, KEEP_SIZE = 0.4, 0.05
 """A factorised matrix serves again after a step of at most this share of the limits, while it
 brings the force down to this share at least."""
 
+LEAST_TIME_STEP = 1e-6
+"""Time step (s) below which a matrix that is still singular stays so."""
+
 WARM_TIME_STEP = 1e3
 """First time step (s) from a known state nearby: nearly Newton's own."""
 
@@ -92,6 +95,8 @@ def relax(
                 )
             except RuntimeError:  # singular: a shorter time step adds mass and drag
                 tau /= 4.0
+                if tau < LEAST_TIME_STEP:
+                    return state, iteration, residual
                 continue
         step = factor.solve(force)
         size = step_size(model, step)

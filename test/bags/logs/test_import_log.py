@@ -211,7 +211,7 @@ def test_a_log_without_rows_or_columns_is_refused(run, content):
 
 
 def test_a_log_that_is_not_text_is_refused(tmp_path):
-    (tmp_path / 'log.csv').write_bytes(b'\xff\xfe\x00\x01' * 10)
+    (tmp_path / 'log.csv').write_bytes(b'\xff\xfa\x00\x01' * 10)
     (tmp_path / 'mapping.yaml').write_text(MAPPING)
     with pytest.raises(LogError, match='not CSV in UTF-8'):
         import_log(tmp_path / 'log.csv', tmp_path / 'mapping.yaml', tmp_path / 'bag')

@@ -373,3 +373,15 @@ def test_a_line_without_end_takes_no_memory(run):
     mapping = 'clock: {columns: [t], format: seconds}\n' + PRESSURE
     with pytest.raises(LogError, match='line 2 has 1000000 characters or more'):
         run('t,p\n' + '1' * 1_000_100, mapping)
+
+
+def test_blocks_of_nuls_in_a_table_are_no_hindrance(tmp_path):
+    text = b's,depth\n0,61.5\n' + b'\0' * 2_500_000 + b'1,61.7\n2,61\0\0.9\n'
+    (tmp_path / 'log.csv').write_bytes(text)
+    (tmp_path / 'log.yaml').write_text(
+        "clock: {columns: [s], format: elapsed seconds, start: '2026-08-01 12:00:00'}\n"
+        'water: {density_kg_m3: 1025.0}\n'
+        'topics: {door/port/pressure: {fields: {depth: {column: depth, unit: m}}}}\n'
+    )
+    done = import_log(tmp_path / 'log.csv', tmp_path / 'log.yaml', tmp_path / 'bag')
+    assert (done.rows, dict(done.left_out)) == (3, {})

@@ -115,3 +115,12 @@ def test_a_file_of_something_else_is_refused(tmp_path):
         imported(tmp_path, 'a;b\n1;2\n')
     with pytest.raises(LogError, match='without any reading'):
         imported(tmp_path, 'UnixTimeSeconds;b\n1750000000;2\n')
+
+
+@pytest.mark.parametrize('missing', ['-9999', '-9999.00', '-99', '0', '0.00', ''])
+def test_what_stands_for_missing_is_no_reading(tmp_path, missing):
+    cells = dict.fromkeys(('TWL_Depth', 'DOR_Depth_Prt', 'DOR_Depth_Std', 'DOR_Spread'), missing)
+    done, found = imported(tmp_path, table(COLUMNS['2026'], [FIRST, FIRST | cells]))
+    assert list(done.left_out) == ['no reading, or none that is new']
+    for topic in ('door/spread', 'sonar/pressure', 'door/port/pressure'):
+        assert len(found[topic]) == 1

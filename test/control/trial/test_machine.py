@@ -271,10 +271,13 @@ def test_a_clock_that_begins_anew_begins_the_trial_anew(ship):
     assert ship.state.hours < 0.01
 
 
-def test_a_file_that_is_no_trial_is_refused_with_its_name(tmp_path):
+@pytest.mark.parametrize(
+    'text', ['{"phase": "asleep"}', '{}', 'reason: mine', '{"minutes": 5.0, "towed": []}', '']
+)
+def test_a_file_that_is_no_trial_is_refused_with_its_name(tmp_path, text):
     path = tmp_path / 'trial.json'
-    path.write_text('{"phase": "asleep"}')
-    with pytest.raises(TrawlError, match=r'trial\.json.*phase'):
+    path.write_text(text)
+    with pytest.raises(TrawlError, match=r'trial\.json'):
         load_memory(path)
 
 

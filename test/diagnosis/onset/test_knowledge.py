@@ -1,6 +1,7 @@
 """What an identification found of boards and errors is what a tow is watched with."""
 
 import json
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -58,6 +59,14 @@ def test_a_file_that_does_not_tell_errors_has_them_as_stated(written, more):
         {'noise_densities': ['speed']},
         {'motion': {'sizes': {'log': float('inf')}}},
         {'motion': {'sizes': {'noise': {'tension': 'much'}}}},
+        {'motion': {'sizes': {'noise': {'tension': -1.0}}}},
+        {'noise_densities': {'speed': 1e300}},
+        {'noise_densities': {'speed': 10**400}},
+        {'covariance': [[float('inf')] * 12] * 12},
+        {'covariance': [['inf'] * 12] * 12},
+        {'covariance': (1e5 * np.eye(12)).tolist()},
+        {'coefficients': {name: {'value': 1e17} for name in COEFFICIENTS}},
+        {'coefficients': {name: {'value': 'nan'} for name in COEFFICIENTS}},
     ],
 )
 def test_errors_that_are_no_numbers_are_refused(written, more):
@@ -71,3 +80,21 @@ def test_windows_of_the_same_tows_tell_boards_and_errors():
     known = by_estimate(estimate, [window])
     assert known.densities == {'speed': pytest.approx(0.1)}
     assert known.covariance.tolist() == (LESS_KNOWN**2 * np.eye(12)).tolist()
+
+
+@pytest.mark.parametrize('text', ['[' * 100_000, '9' * 100_000, '{', '', '{"a": NaN}', '\udcff'])
+def test_what_is_no_estimate_is_refused_in_a_sentence(tmp_path, text):
+    path = tmp_path / 'identification.json'
+    path.write_text(text, errors='surrogateescape')
+    with pytest.raises(TrawlError, match=r'identification\.json.*expected') as refusal:
+        of_identification(path)
+    assert len(str(refusal.value)) < 400
+
+
+def test_a_device_and_a_huge_file_are_refused_at_once(tmp_path):
+    huge = tmp_path / 'huge.json'
+    with huge.open('wb') as file:
+        file.truncate(10**10)
+    for path in (Path('/dev/zero'), tmp_path, huge):
+        with pytest.raises(TrawlError, match='expected'):
+            of_identification(path)

@@ -1,9 +1,11 @@
 """A saved identification goes on as if nothing had happened, and a bad file is refused."""
 
 import json
+import os
 import zipfile
 from dataclasses import replace
 from datetime import date
+from pathlib import Path
 from pkgutil import resolve_name
 
 import numpy as np
@@ -145,11 +147,18 @@ def test_of_another_version_is_refused(fresh, state, gear, monkeypatch, name, va
 
 def test_what_is_no_state_is_refused(fresh, gear, tmp_path):
     path = tmp_path / 'state'
-    with pytest.raises(CheckpointError, match='cannot be read'):
+    with pytest.raises(CheckpointError, match='no such file'):
         load_checkpoint(path, fresh(), gear)
     for content in (b'', b'{}', b'PK\x03\x04 and no more'):
         path.write_bytes(content)
         with pytest.raises(CheckpointError, match='no undamaged state'):
+            load_checkpoint(path, fresh(), gear)
+
+
+def test_a_pipe_or_device_in_the_place_of_a_state_is_refused_at_once(fresh, gear, tmp_path):
+    os.mkfifo(tmp_path / 'pipe')
+    for path in (tmp_path / 'pipe', Path('/dev/zero')):
+        with pytest.raises(CheckpointError, match='expected a file'):
             load_checkpoint(path, fresh(), gear)
 
 

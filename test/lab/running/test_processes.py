@@ -16,7 +16,6 @@ from trawl_ros.lab.running.processes import NodeFailed, Processes
 
 pytestmark = pytest.mark.ros
 
-ENVIRONMENT = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'ROS_DOMAIN_ID': '88'}
 PATIENCE_S = 60.0
 
 
@@ -34,7 +33,7 @@ def running_with(marker: str) -> list[int]:
 
 @pytest.fixture
 def environment(tmp_path):
-    return {**ENVIRONMENT, 'ROS_LOG_DIR': str(tmp_path / 'log')}
+    return {'ROS_LOG_DIR': str(tmp_path / 'log')}
 
 
 def wait_until(condition):

@@ -11,7 +11,7 @@ import pytest
 from trawl_ros.core.errors import SentenceError
 from trawl_ros.core.network import THIS_MACHINE
 from trawl_ros.nodes.links import threads
-from trawl_ros.nodes.links.channels import parse_link
+from trawl_ros.nodes.links.channels import MOST_CLIENTS, parse_link
 from trawl_ros.nodes.links.threads import WAITING_LINES, Line, LineSource, SentenceSink
 
 LINE = b'$SCWTP,4.25,T*00'
@@ -178,8 +178,87 @@ def test_a_file_in_the_place_of_a_pseudo_terminal_stays(opened, tmp_path):
     path = tmp_path / 'notes'
     path.write_text('mine')
     sink = opened(SentenceSink, f'pty:{path}')
-    until(lambda: 'a file already' in sink.state)
+    until(lambda: 'something already' in sink.state)
     assert path.read_text() == 'mine'
+
+
+def _joined(port, number):
+    return [socket.create_connection((THIS_MACHINE, port)) for _ in range(number)]
+
+
+def test_silent_clients_lock_nobody_out(opened):
+    port = free_port()
+    source = opened(LineSource, f'tcp-listen://:{port}')
+    until(lambda: source.state == '')
+    silent = _joined(port, MOST_CLIENTS)
+    until(lambda: len(source._channel._clients) == MOST_CLIENTS)
+    for spoken in range(1, 4):
+        with socket.create_connection((THIS_MACHINE, port)) as client:
+            client.sendall(LINE + b'\r\n')
+            until(lambda spoken=spoken: source.lines == spoken)
+    assert 'too many' in source.turned_away
+    for client in silent:
+        client.close()
+
+
+def test_clients_that_speak_keep_their_places(opened):
+    port = free_port()
+    source = opened(LineSource, f'tcp-listen://:{port}')
+    until(lambda: source.state == '')
+    speaking = _joined(port, MOST_CLIENTS)
+    for client in speaking:
+        client.sendall(LINE + b'\r\n')
+    until(lambda: source.lines == MOST_CLIENTS)
+    (late,) = _joined(port, 1)
+    until(lambda: source.turned_away)
+    for client in speaking:
+        client.sendall(LINE + b'\r\n')
+    until(lambda: source.lines == 2 * MOST_CLIENTS)
+    for client in (late, *speaking):
+        client.close()
+
+
+def test_listeners_keep_their_places(opened):
+    port = free_port()
+    sink = opened(SentenceSink, f'tcp-listen://:{port}')
+    until(lambda: sink.state == '')
+    first = _joined(port, MOST_CLIENTS)
+    (late,) = _joined(port, 1)
+    until(lambda: sink.turned_away)
+    sink.put(LINE + b'\r\n')
+    assert all(client.recv(100) == LINE + b'\r\n' for client in first)
+    for client in (late, *first):
+        client.close()
+
+
+@pytest.mark.parametrize('target', ['notes', 'nowhere', '/dev/null'])
+def test_a_link_of_somebody_else_in_the_place_of_a_pseudo_terminal_stays(opened, tmp_path, target):
+    (tmp_path / 'notes').write_text('mine')
+    link = tmp_path / 'link'
+    link.symlink_to(target)
+    sink = opened(SentenceSink, f'pty:{link}')
+    until(lambda: 'something already' in sink.state)
+    assert str(link.readlink()) == target
+
+
+def test_a_pseudo_terminal_in_use_keeps_its_link(opened, tmp_path):
+    path = tmp_path / 'tty'
+    first = opened(SentenceSink, f'pty:{path}')
+    until(lambda: first.state == '')
+    name = path.readlink()
+    second = opened(SentenceSink, f'pty:{path}')
+    until(lambda: 'something already' in second.state)
+    assert path.readlink() == name
+
+
+def test_the_link_that_a_kill_left_is_replaced(opened, tmp_path):
+    path = tmp_path / 'tty'
+    master, slave = pty.openpty()
+    path.symlink_to(os.ttyname(slave))
+    os.close(master)
+    os.close(slave)
+    sink = opened(SentenceSink, f'pty:{path}')
+    until(lambda: sink.state == '')
 
 
 def test_half_lines_of_a_port_are_put_together(opened):

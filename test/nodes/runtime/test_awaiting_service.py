@@ -14,8 +14,6 @@ from trawl_ros.nodes.runtime.run import NodeExecutor  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 92
-
 
 class Waiting:
     """What a coroutine can wait for."""
@@ -50,7 +48,7 @@ class Asked(TrawlNode):
 @pytest.fixture(params=[NodeExecutor, SingleThreadedExecutor])
 def spinning(request):
     context = rclpy.Context()
-    rclpy.init(args=[], context=context, domain_id=DOMAIN)
+    rclpy.init(args=[], context=context)
     node, executor = Asked(context=context), request.param(context=context)
     executor.add_node(node)
 

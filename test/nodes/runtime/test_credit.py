@@ -1,5 +1,7 @@
 """A source waits for its consumers, but never for one that can no longer come to where it is."""
 
+import time
+
 import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
@@ -13,7 +15,6 @@ from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 100
 WALL_CLOCK = 1_700_000_000 * SECOND
 """Stamps of a source that does not publish a clock."""
 
@@ -39,7 +40,7 @@ class Reporter(TrawlNode):
 
 @pytest.fixture(scope='module')
 def graph(open_graph):
-    with open_graph(DOMAIN) as graph:
+    with open_graph() as graph:
         yield graph
 
 
@@ -135,6 +136,61 @@ def test_who_does_not_get_on_is_waited_for_for_a_while_and_again_once_it_does(
     assert not source.consumers.followed(begin + 55 * SECOND)
 
 
+class Clock:
+    """Clock of the wall that a test puts forward."""
+
+    def __init__(self, monkeypatch):
+        self.ahead = 0.0
+        real = time.monotonic
+        monkeypatch.setattr(credit.time, 'monotonic', lambda: real() + self.ahead)
+
+
+def _span_of_a_creeping_consumer(source, report, begin, clock, step_ns):
+    """Data time (s) that a source comes on in 20 min, each 5 s of which a consumer gains a step."""
+    consumers = source.consumers
+    stamp = latest = begin + 60 * SECOND
+    report('needed', stamp)
+    for _ in range(240):
+        clock.ahead += 5.0
+        stamp += step_ns
+        report('needed', min(stamp, latest))
+        # The source asks at each of its ticks, with a lead of 3 s.
+        for _ in range(50):
+            if not consumers.followed(latest - 3 * SECOND):
+                break
+            latest += SECOND // 10
+            consumers.sent(latest)
+    return (latest - begin) / SECOND - 60.0
+
+
+@pytest.mark.parametrize('step_ns', [1, SECOND // 1000, SECOND // 100])
+def test_a_stamp_that_creeps_on_does_not_stop_a_source(source, report, begin, monkeypatch, step_ns):
+    clock = Clock(monkeypatch)
+    assert _span_of_a_creeping_consumer(source, report, begin, clock, step_ns) > 60.0
+    assert source.consumers.stalled() == ['needed']
+
+
+def test_a_consumer_that_is_slow_is_waited_for_throughout(source, report, begin, monkeypatch):
+    clock = Clock(monkeypatch)
+    gone = _span_of_a_creeping_consumer(source, report, begin, clock, SECOND)
+    assert gone == pytest.approx(240.0, abs=5.0)
+    assert not source.consumers.stalled()
+
+
+def test_who_is_waited_for_is_named(source, report, begin, monkeypatch):
+    clock = Clock(monkeypatch)
+    report('needed', begin + 50 * SECOND)
+    assert not source.consumers.followed(begin + 55 * SECOND)
+    assert not source.consumers.waited_for()
+    clock.ahead += 40.0
+    report('needed', begin + 50 * SECOND)
+    assert source.consumers.waited_for() == ['needed']
+    clock.ahead += 100.0
+    report('needed', begin + 50 * SECOND)
+    assert not source.consumers.waited_for()
+    assert source.consumers.stalled() == ['needed']
+
+
 def test_old_progress_takes_nothing_back(source, report, begin):
     report('needed', begin + 59 * SECOND)
     report('needed', begin + 2 * SECOND)
@@ -145,7 +201,25 @@ def test_names_that_never_end_are_not_kept(source, report, begin, monkeypatch):
     monkeypatch.setattr(credit, 'CONSUMERS', Limit(2, '', ''))
     for number in range(5):
         report(f'consumer {number}', begin + SECOND)
-    assert len(source.consumers._heard) == 2
+    assert len(source.consumers._heard) <= 2
+
+
+def test_invented_names_lock_nobody_out(source, report, begin, monkeypatch):
+    monkeypatch.setattr(credit, 'CONSUMERS', Limit(2, '', ''))
+    for name in ('invented 1', 'invented 2', 'reporter', 'invented 3', 'needed'):
+        report(name, begin + 57 * SECOND)
+    assert {'reporter', 'needed'} <= source.consumers._heard.keys()
+    assert not source.consumers.missing()
+
+
+def test_who_fell_silent_makes_room(source, report, begin, monkeypatch):
+    monkeypatch.setattr(credit, 'CONSUMERS', Limit(1, '', ''))
+    clock = Clock(monkeypatch)
+    report('source', begin + SECOND)
+    report('reporter', begin + SECOND)
+    clock.ahead += 2 * credit.SILENT_S
+    report('late', begin + SECOND)
+    assert list(source.consumers._heard) == ['late']
 
 
 class Follower(TrawlNode):

@@ -12,7 +12,6 @@ rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the
 
 pytestmark = pytest.mark.ros
 
-DOMAIN = 91
 NODE = """\
 import sys
 from trawl_ros.core.errors import BagError
@@ -38,13 +37,13 @@ sys.exit(run(Tried, sys.argv))
 
 
 @pytest.fixture
-def start(tmp_path):
+def start():
     started = []
 
-    def start_node(act, *arguments):
+    def start_node(act, *arguments, **environment):
         process = subprocess.Popen(
             [sys.executable, '-c', NODE.format(act=act), *arguments],
-            env={**os.environ, 'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(tmp_path)},
+            env={**os.environ, **environment},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -87,6 +86,29 @@ def test_signals_end_it_cleanly_even_when_they_come_twice(start, number):
     process.send_signal(number)
     output, errors = process.communicate(timeout=20.0)
     assert (process.returncode, output, errors) == (0, 'finished\n', '')
+
+
+def test_a_node_that_compiles_answers_a_signal(start):
+    watch = "__import__('trawl_ros.core.first_start', fromlist=['']).COMPILATION"
+    act = f"{watch}.begin(); print('begun', flush=True); [{watch}.step() for _ in iter(int, 1)]"
+    process = start(act)
+    assert [process.stdout.readline() for _ in range(2)] == ['up\n', 'begun\n']
+    process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=20.0)
+    # The timer may be due again while it ends.
+    assert (process.returncode, output.replace('begun\n', '')) == (0, 'finished\n')
+    # Where the machine is busy, it has said by then that it compiles.
+    assert all('compiling the loops' in line for line in errors.splitlines())
+
+
+@pytest.mark.parametrize('home', ['/', '~', '/nowhere', ''])
+def test_a_node_needs_no_home(start, tmp_path, home):
+    # Root can write to any folder.
+    home = home if os.getuid() or home != '/' else '/proc'
+    work = {'HOME': home, 'ROS_LOG_DIR': '', 'TMPDIR': str(tmp_path)}
+    output, _ = start('self.end(0)', **work).communicate(timeout=20.0)
+    assert output == 'up\nfinished\n'
+    assert (tmp_path / f'trawl_ros-{os.getuid()}' / '.ros').is_dir()
 
 
 def test_arguments_that_mean_nothing_are_refused(start):

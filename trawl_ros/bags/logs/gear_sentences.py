@@ -1,7 +1,7 @@
 """Sentences of fishing gear in a log: heard in their order, stamped and assembled at its end."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from statistics import median
 
@@ -12,9 +12,11 @@ from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample
 from trawl_ros.sentences.assembly import SampleAssembly, samples_of
 from trawl_ros.sentences.codec import SentenceReader, Spoken
-from trawl_ros.sentences.framing import Frame, Unreadable, parse_line
+from trawl_ros.sentences.framing import Frame, Unreadable
 from trawl_ros.sentences.table import SentenceTable
 from trawl_ros.sentences.times import DAY
+
+FALSE_TIME = 'a reading whose time cannot be'
 
 TOLD_NS = SECOND // 2
 """Difference (ns) of two clocks in a log from which on it is told."""
@@ -53,16 +55,9 @@ class GearListening:
         self._left = left
         self._heard: list[_Heard] = []
 
-    def frame(self, line: bytes) -> Frame | None:
-        """Give the frame of a line if a table has its address; None for others' lines."""
-        if not self._tables:
-            return None
-        try:
-            frame = parse_line(line)
-        except Unreadable:
-            # Told by the listener to the ship's sensors, in the same words.
-            return None
-        return frame if self._reader.knows(frame) else None
+    def knows(self, frame: Frame) -> bool:
+        """True if a table has the address of a sentence."""
+        return self._reader.knows(frame)
 
     def hear(self, frame: Frame, stamp: int | None, moment: int) -> None:
         """Take a sentence; ``moment`` is the number of the time said last, -1 before the first."""
@@ -76,7 +71,9 @@ class GearListening:
         """True if a sentence says the time and the day."""
         return any(heard.spoken.time and heard.spoken.time.day for heard in self._heard)
 
-    def samples(self, moments: list[int], start: int | None) -> tuple[list[Sample], list[str]]:
+    def samples(
+        self, moments: list[int], start: int | None, false: Collection[int]
+    ) -> tuple[list[Sample], list[str]]:
         """Give all samples, and sentences on clocks that differ.
 
         Parameters
@@ -85,7 +82,13 @@ class GearListening:
             Times (ns) that the ship's clock said; where there are none, sentences have their own.
         start
             Midnight (ns) before the log begins, for times of day without any other date.
+        false
+            Numbers of moments that cannot be.
         """
+        heard = [one for one in self._heard if one.moment not in false]
+        if len(heard) < len(self._heard):
+            self._left[FALSE_TIME] += len(self._heard) - len(heard)
+        self._heard = heard
         stamped = self._stamped(moments, start)
         stamped = self._of_one_system_each(stamped)
         samples = samples_of(stamped, self._assembly)

@@ -75,7 +75,7 @@ def import_log(
     path = Path(csv_path)
     reading = _Reading(path, load_mapping(mapping_path), leave_out)
     done = write_samples(path, reading.samples(), bag_path, lambda: (reading.rows, reading.left))
-    return replace(done, notes=tuple(reading.notes))
+    return replace(done, notes=(*reading.notes, *done.notes))
 
 
 class _Reading:
@@ -200,7 +200,7 @@ class _Reading:
             number = parse(text, self._decimal)
         except ValueError as expected:
             raise row.bad(source.column, f'{expected} ({source.unit})') from None
-        if number in self._missing_numbers:
+        if number in self._missing_numbers or number in source.missing:
             return math.nan
         if source.hemisphere:
             try:

@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 
 from trawl_ros.core.errors import LogError
 from trawl_ros.core.foreign import one_line, open_file, reading
+from trawl_ros.core.limits import LOG_NULS
 from trawl_ros.core.schema import Record
 
 MAX_LINE = 1_000_000
@@ -129,6 +130,9 @@ def read_rows(
     encoding = 'utf-8-sig' if layout.encoding.lower() in ('utf-8', 'utf8') else layout.encoding
     with reading(path, LogError), open_file(path, LogError) as content:
         try:
+            if content.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+                encoding = 'utf-16'
+            content.seek(0)
             stream = TextIOWrapper(content, encoding, newline='')
             rows = _wide(path, layout, needed, _Lines(path, stream, layout))
             yield from (
@@ -163,7 +167,15 @@ class _Lines:
         raise StopIteration
 
     def _next(self) -> str:
-        line = self._stream.readline(MAX_LINE)
+        line = '\0'
+        # A loss of power leaves blocks of NULs.
+        for _ in range(LOG_NULS.value // MAX_LINE):
+            if not line or line.strip('\0'):
+                break
+            line = self._stream.readline(MAX_LINE)
+        else:
+            raise LogError(f'{self._path}: more than {LOG_NULS} of NULs; expected a table')
+        line = line.replace('\0', '')
         self.number += bool(line)
         if len(line) == MAX_LINE:
             raise LogError(

@@ -26,7 +26,8 @@ _TOGETHER = (
 class ColumnMapping(Record):
     """Column of a reading: (cell x scale + offset) in the unit.
 
-    ``hemisphere`` names a column with N, S, E or W for a latitude or longitude.
+    ``hemisphere`` names a column with N, S, E or W for a latitude or longitude. ``missing`` are
+    numbers that stand for no reading in this column, beside those of the whole log.
     """
 
     column: str
@@ -34,6 +35,7 @@ class ColumnMapping(Record):
     scale: float = 1.0
     offset: float = 0.0
     hemisphere: str | None = None
+    missing: tuple[float, ...] = ()
 
     def si(self, cell: float) -> float:
         """Convert the cell into SI units."""

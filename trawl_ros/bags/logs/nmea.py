@@ -5,31 +5,40 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import date
+from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
+import numpy as np
 from pynmeagps import NMEAReader
-from pynmeagps.exceptions import NMEAParseError
 from pynmeagps.nmeahelpers import calc_checksum
 
 from trawl_ros.bags.logs.clock import ClockReader
-from trawl_ros.bags.logs.gear_sentences import GearListening
+from trawl_ros.bags.logs.gear_sentences import FALSE_TIME, GearListening
 from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, load_nmea_mapping
-from trawl_ros.bags.logs.nmea_readings import NoReading, SampleAt, sample_of
-from trawl_ros.bags.logs.nmea_times import SentenceTimes, spread_stamps
+from trawl_ros.bags.logs.nmea_readings import NoReading, SampleAt, misread, sample_of
+from trawl_ros.bags.logs.nmea_times import TIMING, SentenceTimes, spread_stamps
 from trawl_ros.bags.logs.writing import Imported, listed, write_samples
 from trawl_ros.core.errors import LogError
 from trawl_ros.core.foreign import open_file
 from trawl_ros.core.foreign import reading as reading_file
+from trawl_ros.core.limits import LOG_NULS
+from trawl_ros.core.stamps import LOG_APART_NS, judge_stamps
 from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample
-from trawl_ros.sentences.framing import Frame
+from trawl_ros.sentences.framing import (
+    LONGEST_LINE,
+    Frame,
+    SentenceSplitter,
+    Unreadable,
+    parse_line,
+)
 
-MAX_LINE = 4096
-"""Bytes in a line; a sentence has 82 at most, a recorder's mark in front of it some more."""
+BLOCK_BYTES = 1 << 16
+"""Bytes of a log that are read at once."""
 
-_TIMING = {'RMC', 'ZDA', 'GGA', 'GLL', 'GNS'}
-_TAG_TIME = re.compile(r'c:(\d+)', re.ASCII)
+_NO_LETTER = re.compile(r'[^A-Z0-9]')
+_TABLE = re.compile(r'[,;|\t]')
 _AROUND = ' \t\r\n,;|[]()<>"'
 
 
@@ -66,7 +75,7 @@ def import_nmea(
     listening = _Listening(path, load_nmea_mapping(mapping_path), leave_out)
     samples = listening.samples()
     done = write_samples(path, samples, bag_path, lambda: (listening.lines, listening.left))
-    return replace(done, notes=tuple(listening.notes))
+    return replace(done, notes=(*listening.notes, *done.notes))
 
 
 @dataclass(frozen=True)
@@ -100,76 +109,101 @@ class _Listening:
 
     def samples(self) -> list[Sample]:
         heard: dict[str, list[_Heard]] = defaultdict(list)
-        for line in self._lines():
-            front, text = _front_of(line)
-            if (frame := self._gear.frame(line)) is not None:
-                self._hear_gear(frame, front)
+        for frame in self._frames():
+            if self._gear.knows(frame):
+                self._hear_gear(frame)
                 continue
-            if not text:
-                self.left['a line without a sentence ($…)'] += 1
+            if frame.start != '$':
+                address = _NO_LETTER.sub('', frame.body.partition(',')[0])[:10]
+                self.left[f'sentence {frame.start}{address}, which no topic takes'] += 1
                 continue
-            sentence = self._parse(text)
+            sentence = self._parse(frame)
             if sentence is None:
                 continue
             kind = str(sentence.msgID)
             if self._recorder is None:
                 stamp = self._times.hear(sentence)
-            elif (stamp := self._recorded(front)) is None:
+            elif (stamp := self._recorded(frame)) is None:
                 continue
             if kind not in self._takers:
-                if kind not in _TIMING:
+                if kind not in TIMING:
                     self.left[f'sentence {kind}, which no topic takes'] += 1
                 continue
             if stamp is None and not self._times.moments:
                 self.left['before the first time with a date'] += 1
                 continue
             self._take(heard, sentence, stamp)
+        self.left.update(self._times.impossible)
         start = self._mapping.start
         timeless = start is None and not self._gear.has_times
         if self._recorder is None and self.lines and not self._times.moments and timeless:
-            why = f' ({listed(self.left)})' if self.left else ''
-            raise LogError(
-                f'{self._path}: no valid RMC or ZDA among {self.lines} lines says the date{why}; '
-                'expected one, or key date in the mapping, or time: recorder'
-            )
+            raise LogError(self._undated())
+        judged = judge_stamps(
+            np.array(self._times.moments, dtype=np.int64), apart_ns=LOG_APART_NS, in_order=True
+        )
+        self._false = frozenset(np.flatnonzero(judged.false).tolist())
         samples = [
             sample
             for topic, sentences in heard.items()
             for sample in self._chosen(topic, sentences)
         ]
-        of_gear, self.notes = self._gear.samples(self._times.moments, start)
+        of_gear, notes = self._gear.samples(self._times.moments, start, self._false)
+        self.notes = [*judged.sentences(), *notes]
         return samples + of_gear
 
-    def _hear_gear(self, frame: Frame, front: str) -> None:
+    def _undated(self) -> str:
+        """Say that there is no date, what was seen instead, and what would help."""
+        seen = listed(self._times.unused + self.left)
+        # A time of day and a date make a time; without either there is nothing to date.
+        if self._times.undated:
+            help_ = 'one, or key date in the mapping, which these times of day then have'
+        else:
+            help_ = 'one, or time: recorder in the mapping'
+        return (
+            f'{self._path}: no valid RMC or ZDA among {self.lines} lines says the date'
+            f'{f" ({seen})" if seen else ""}; expected {help_}'
+        )
+
+    def _hear_gear(self, frame: Frame) -> None:
         stamp = None
-        if self._recorder is not None and (stamp := self._recorded(front)) is None:
+        if self._recorder is not None and (stamp := self._recorded(frame)) is None:
             return
         self._gear.hear(frame, stamp, len(self._times.moments) - 1)
 
-    def _lines(self) -> Iterator[bytes]:
-        """Yield the lines that are not empty."""
+    def _frames(self) -> Iterator[Frame]:
+        """Yield the sentences that are whole, and count what is not."""
+        splitter = SentenceSplitter()
         with reading_file(self._path, LogError), open_file(self._path, LogError) as stream:
-            while line := stream.readline(MAX_LINE):
-                self.lines += 1
-                if len(line) == MAX_LINE:
-                    raise LogError(
-                        f'{self._path}: line {self.lines} has {MAX_LINE} bytes or more; '
-                        'expected sentences of NMEA 0183'
-                    )
-                if line.strip():
-                    yield line
+            pieces = chain.from_iterable(map(splitter.feed, self._blocks(stream)))
+            for piece in chain(pieces, splitter.end()):
+                self.lines = max(splitter.line, 1)
+                try:
+                    if piece.strip():
+                        yield parse_line(piece)
+                except Unreadable as reason:
+                    self.left[str(reason)] += 1
+        self.lines = splitter.line
+        if splitter.too_long:
+            self.left[f'more than {LONGEST_LINE} bytes without a sentence'] += splitter.too_long
 
-    def _parse(self, text: bytes) -> Any | None:
-        if b'*' not in text:
-            if self._mapping.need_checksum:
-                self.left['a sentence without checksum'] += 1
-                return None
-            text += b'*' + calc_checksum(text[1:].decode('ascii', 'replace')).encode()
-        try:
-            sentence = NMEAReader.parse(text)
-        except NMEAParseError:
-            self.left['a sentence whose checksum is wrong'] += 1
+    def _blocks(self, stream: BinaryIO) -> Iterator[bytes]:
+        nulls = 0
+        while block := stream.read(BLOCK_BYTES):
+            nulls = 0 if block.strip(b'\0') else nulls + len(block)
+            if nulls > LOG_NULS.value:
+                raise LogError(f'{self._path}: more than {LOG_NULS} of NULs; expected sentences')
+            yield block
+
+    def _parse(self, frame: Frame) -> Any | None:
+        if self._mapping.need_checksum and not frame.checked:
+            self.left['a sentence without checksum'] += 1
             return None
+        body = frame.body.strip()
+        try:
+            sentence = NMEAReader.parse(f'${body}*{calc_checksum(body)}'.encode())
+            if why := misread(sentence):
+                self.left[f'{sentence.msgID}: {why}'] += 1
+                return None
         # The library also raises what Python does, by sentences whose checksum is right.
         except Exception:
             sentence = None
@@ -177,20 +211,23 @@ class _Listening:
             self.left['a sentence that cannot be understood'] += 1
         return sentence
 
-    def _recorded(self, front: str) -> int | None:
+    def _recorded(self, frame: Frame) -> int | None:
         assert self._recorder is not None
-        tagged = _TAG_TIME.search(front) if front.startswith('\\') else None
-        text = tagged[1] if tagged else front.strip(_AROUND)
-        try:
-            return self._recorder.read(text)
-        except ValueError as expected:
-            if not self._leave_out:
-                raise LogError(
-                    f'{self._path}: line {self.lines}: found {text!r} in front of the sentence, '
-                    f'expected {expected}'
-                ) from None
-            self.left[f'in front of the sentence: expected {expected}'] += 1
-            return None
+        text = frame.tag_text or frame.front.strip(_AROUND)
+        expected = ''
+        # A device may have its name before or behind the time.
+        for part in dict.fromkeys((text, *_TABLE.split(text), *text.split())):
+            try:
+                return self._recorder.read(part.strip(_AROUND))
+            except ValueError as reason:
+                expected = expected or str(reason)
+        if not self._leave_out:
+            raise LogError(
+                f'{self._path}: line {self.lines}: found {text!r} in front of the sentence, '
+                f'expected {expected}'
+            )
+        self.left[f'in front of the sentence: expected {expected}'] += 1
+        return None
 
     def _take(self, heard: dict[str, list[_Heard]], sentence: Any, stamp: int | None) -> None:
         kind, talker = str(sentence.msgID), str(sentence.talker)
@@ -210,6 +247,12 @@ class _Listening:
 
     def _chosen(self, topic: str, sentences: list[_Heard]) -> list[Sample]:
         """Select one kind of sentence from one talker, and give each its time."""
+        number = len(sentences)
+        sentences = [heard for heard in sentences if heard.moment not in self._false]
+        if number > len(sentences):
+            self.left[FALSE_TIME] += number - len(sentences)
+        if not sentences:
+            return []
         entry = self._mapping.topics[topic]
         there = {heard.kind for heard in sentences}
         kind = next(name for name in entry.sentences if name in there)
@@ -229,14 +272,3 @@ class _Listening:
         return [
             heard.sample(next(given) if heard.stamp is None else heard.stamp) for heard in chosen
         ]
-
-
-def _front_of(line: bytes) -> tuple[str, bytes]:
-    """Split a line into the text in front of its sentence, and the sentence.
-
-    Where a sentence was cut short by the next one, the next one is whole. Those of the ship begin
-    with a dollar; a line without one gives an empty sentence.
-    """
-    sign = b'$' if b'$' in line else b'@' if b'@' in line else b'#'
-    front = line[: max(line.find(sign), 0)].decode('ascii', 'replace')
-    return front, line[line.rfind(sign) :].strip() if sign == b'$' else b''

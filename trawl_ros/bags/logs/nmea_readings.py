@@ -1,10 +1,12 @@
 """Conversion of NMEA 0183 sentences into samples without their times."""
 
 import math
+import re
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from pynmeagps.nmeatypes_get import NMEA_PAYLOADS_GET
 
 from trawl_ros.bags.logs.nmea_mapping import NmeaMapping, NmeaTopic
 from trawl_ros.core.compass import compass_yaw, course_velocity
@@ -19,8 +21,38 @@ SampleAt = Callable[[int], Sample]
 """Gives the sample for a stamp (ns)."""
 
 
+_UNITS = {'cogtUnit': 'T', 'cogmUnit': 'M', 'sognUnit': 'N', 'sogkUnit': 'K', 'hgdTu': 'T',
+          'hgdMu': 'M', 'spdNu': 'N', 'spdKu': 'K', 'headingTu': 'T', 'depthfu': 'F',
+          'depthmu': 'M', 'depthfathu': 'F'}  # fmt: skip
+"""Letters behind numbers, by the library's names of their fields."""
+_POSITION = re.compile(r'\d+(?:\.\d*)?')
+
+
 class NoReading(ValueError):
     """Sentence without a valid reading, by its status or by empty fields."""
+
+
+def misread(sentence: Any) -> str | None:
+    """Say in what the fields of a parsed sentence are not those of its kind; None where they are.
+
+    The library takes any number of fields, of any content where it expects letters, and minutes
+    of 60 and more.
+    """
+    names = list(NMEA_PAYLOADS_GET.get(sentence.msgID, ()))
+    fields = [text.strip() for text in sentence.payload]
+    if 'group' in names or not names:
+        return None
+    if len(fields) > len(names):
+        # As where a decimal comma made two of one.
+        return f'{len(fields)} fields, expected {len(names)} at most'
+    for name, text in zip(names, fields, strict=False):
+        if text and name in _UNITS and text.upper() != _UNITS[name]:
+            return f'a field that should be {_UNITS[name]} is not'
+        if name in ('lat', 'lon') and text:
+            whole, _, _ = text.partition('.')
+            if not _POSITION.fullmatch(text) or int(whole[-2:] or 0) >= 60:
+                return 'a position that is not degrees and minutes'
+    return None
 
 
 def sample_of(topic: str, sentence: Any, entry: NmeaTopic, mapping: NmeaMapping) -> SampleAt:

@@ -53,6 +53,7 @@ class Database:
     """
 
     storage = 'sqlite3'
+    counts_arrivals = False
 
     def __init__(self, path: Path, report: Callable[[str], None]) -> None:
         self.path = path

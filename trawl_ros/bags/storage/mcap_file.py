@@ -108,6 +108,11 @@ class McapFile:
         return len(self._damaged)
 
     @property
+    def counts_arrivals(self) -> bool:
+        """True if the numbers of its messages, by topic, are the order in which they came."""
+        return self._library == LIBRARY
+
+    @property
     def definitions(self) -> dict[str, Definition]:
         """Definition of each topic's messages; the first channel of a topic counts."""
         by_topic: dict[str, Definition] = {}

@@ -106,4 +106,10 @@ def load_memory(path: Path) -> TrialMemory:
     TrawlError
         If the file cannot be read, or is no memory of a trial.
     """
-    return validated(TrialMemory, load_yaml(path, TrawlError), path, TrawlError)
+    memory = validated(TrialMemory, load_yaml(path, TrawlError), path, TrawlError)
+    # The file will be replaced, and a foreign one may have a few of the keys, or none.
+    if missing := sorted(TrialMemory.model_fields.keys() - memory.model_fields_set):
+        raise TrawlError(
+            f'{path}: found no {missing[0]}, expected the memory of a trial, or a new path'
+        )
+    return memory

@@ -1,22 +1,31 @@
 """Knowledge of the boards, and of how large errors are, with which a tow is watched."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.foreign import load_json, short
+from trawl_ros.core.schema import validated
 from trawl_ros.estimation.fit.error_terms import GROUPS
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.processes import ErrorSizes
+from trawl_ros.gear.boards import CoefficientsRecord
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 STATED = ErrorSizes()
 """Sizes of the errors as they are stated, before any tow has told more."""
+
+MAX_VARIANCE = 100.0
+"""Variance of a coefficient, none of which is larger than 10."""
+
+MAX_SIZE = 1e6
+"""Noise density, or factor on the stated size of an error."""
 
 
 @dataclass(frozen=True)
@@ -54,19 +63,20 @@ def of_identification(path: Path) -> Knowledge:
     TrawlError
         If the file cannot be read, or has no coefficients with their covariance.
     """
+    known: Any = load_json(path, TrawlError)
     try:
-        known = json.loads(path.read_text(encoding='utf-8'))
-        values = np.array([float(known['coefficients'][name]['value']) for name in COEFFICIENTS])
+        found = {name: float(known['coefficients'][name]['value']) for name in COEFFICIENTS}
+        values = validated(CoefficientsRecord, found, path, TrawlError).array()
         covariance = np.array(known['covariance'], dtype=float)[: len(values), : len(values)]
+        if not np.abs(covariance).max() <= MAX_VARIANCE:
+            raise ValueError(f'covariance: found a value that is not below {MAX_VARIANCE:g}')
         np.linalg.cholesky(covariance)
         densities = _finite(known.get('noise_densities', {}))
-        found = (known.get('motion') or {}).get('sizes', {})
-        sizes = _sizes(found, found.get('log', STATED.log))
-    except (
-        OSError, ValueError, KeyError, TypeError, AttributeError, np.linalg.LinAlgError
-    ) as reason:  # fmt: skip
+        sizes_found = (known.get('motion') or {}).get('sizes', {})
+        sizes = _sizes(sizes_found, sizes_found.get('log', STATED.log))
+    except (ValueError, KeyError, TypeError, AttributeError, np.linalg.LinAlgError) as reason:
         raise TrawlError(
-            f'{path}: {type(reason).__name__}: {reason}; expected an identification.json with '
+            f'{path}: {short(reason)}; expected an identification.json with '
             'coefficients and their covariance, as `trawl identify` writes it'
         ) from reason
     return Knowledge(values, covariance, densities, sizes.no_less_than(STATED))
@@ -86,15 +96,15 @@ def _sizes(found: Mapping[str, dict[str, float]], log: float) -> ErrorSizes:
 
 
 def _finite(found: Mapping[str, float]) -> dict[str, float]:
-    """Numbers by name.
+    """Return sizes by name.
 
     Raises
     ------
     ValueError
-        If one is not finite: no innovation would be, and nothing ever found.
+        If one is negative, too large or not finite: no innovation would be finite either.
     """
     numbers = {name: float(number) for name, number in found.items()}
     for name, number in numbers.items():
-        if not np.isfinite(number):
-            raise ValueError(f'{name} is {number}')
+        if not 0.0 <= number <= MAX_SIZE:
+            raise ValueError(f'{name} is {number:g}, expected from 0 to {MAX_SIZE:g}')
     return numbers

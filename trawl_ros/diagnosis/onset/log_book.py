@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Literal
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import appending
+from trawl_ros.core.files import appending, is_there
+from trawl_ros.core.foreign import open_file, parse_json
 from trawl_ros.diagnosis.onset.findings import Finding
 
 Event = Literal['begun', 'raised', 'published', 'settled', 'withdrawn', 'acknowledged', 'dismissed']
@@ -16,29 +17,40 @@ Event = Literal['begun', 'raised', 'published', 'settled', 'withdrawn', 'acknowl
 MOST_BYTES = 5_000_000
 """A file of this size becomes the older one, in place of the one before: twice as much is kept."""
 
+MOST_TOLD = 50
+"""Nodes named in one event: with the longest names that ROS allows, 13 kB."""
+
 LONGEST_LINE = 20_000
+
+BEGINNING = b'{"time": "'
+KEYS = frozenset({'time', 'event', 'stamp_ns', 'who'})
+"""Beginning and keys of a line, by which a log book is told from a foreign file."""
 
 
 class LogBook:
     """Log book in a file that only ever grows, until it is set aside as ``….1``.
 
-    Each line is on the disk before the next thing happens. A line that a kill cut short is taken
-    off when the file is opened again.
+    Each line is on the disk before the next thing happens. A line that a kill cut short is removed
+    when the file is opened again.
 
     Parameters
     ----------
     path
-        Of the file.
+        Of the file: a new or empty one, or a log book.
 
     Raises
     ------
     TrawlError
-        If it cannot be written to.
+        If it cannot be written to, or holds something else, as the older file may.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._mend()
+        _checked(self.older)
+        data = _checked(path)
+        whole = data.rfind(b'\n') + 1
+        if whole < len(data):
+            os.truncate(path, whole)
         appending(path).close()
 
     @property
@@ -77,17 +89,13 @@ class LogBook:
             'who': who,
         }
         if to:
-            line['to'] = list(to)
+            line['to'] = list(to[:MOST_TOLD])
         if finding is not None:
             line |= {'finding': finding.number, 'sentence': finding.sentence()}
             line |= {'onset_ns': finding.onset_ns, 'name': finding.name}
             line['alike'] = list(finding.alike)
-        text = json.dumps(line, ensure_ascii=False)[:LONGEST_LINE]
-        try:
-            if self.path.stat().st_size > MOST_BYTES:
-                self.path.replace(self.older)
-        except OSError as reason:
-            raise TrawlError(f'{self.path}: cannot be written ({reason.strerror})') from reason
+        text = json.dumps(line, ensure_ascii=False)
+        self._set_aside()
         with appending(self.path) as file:
             file.write(f'{text}\n')
             file.flush()
@@ -95,29 +103,55 @@ class LogBook:
 
     def events(self) -> list[Mapping[str, object]]:
         """Events so far, those set aside first; lines that are none are left out."""
-        found: list[Mapping[str, object]] = []
-        for path in (self.older, self.path):
-            if not path.exists():
-                continue
-            for line in path.read_text(encoding='utf-8', errors='replace').splitlines():
-                try:
-                    event = json.loads(line)
-                except ValueError:
-                    continue
-                if isinstance(event, dict):
-                    found.append(event)
-        return found
+        lines = (line for path in (self.older, self.path) for line in _checked(path).splitlines())
+        return [event for line in lines if (event := _event(line)) is not None]
 
     def last_number(self) -> int:
         """Number of the last finding, 0 where there is none."""
         numbers = (event.get('finding') for event in self.events())
         return max((one for one in numbers if isinstance(one, int)), default=0)
 
-    def _mend(self) -> None:
-        """Take off a last line without an end."""
-        if self.path.is_symlink() or not self.path.exists():
-            return
-        data = self.path.read_bytes()
-        whole = data.rfind(b'\n') + 1
-        if whole < len(data):
-            os.truncate(self.path, whole)
+    def _set_aside(self) -> None:
+        try:
+            if not self.path.exists() or self.path.stat().st_size <= MOST_BYTES:
+                return
+            _checked(self.older)
+            self.path.replace(self.older)
+        except OSError as reason:
+            raise TrawlError(f'{self.path}: cannot be written ({reason.strerror})') from reason
+
+
+def _checked(path: Path) -> bytes:
+    """Read a log book; a file that does not exist or is empty has no lines.
+
+    Raises
+    ------
+    TrawlError
+        If something else is there, or the file is larger than a log book becomes.
+    """
+    if not is_there(path, TrawlError):
+        return b''
+    with open_file(path, TrawlError) as stream:
+        data = stream.read(MOST_BYTES + LONGEST_LINE + 1)
+    first, *_ = data.split(b'\n', 1)
+    last = data[data.rfind(b'\n') + 1 :]
+    own = b'\n' not in data or _event(first) is not None
+    if len(data) > MOST_BYTES + LONGEST_LINE or not own or not _is_cut_line(last):
+        raise TrawlError(
+            f'{path}: holds something other than events of a log book, and is left as it is; '
+            'expected a new or empty file, or a log book'
+        )
+    return data
+
+
+def _event(line: bytes) -> Mapping[str, object] | None:
+    try:
+        event = parse_json(line)
+    except ValueError:
+        return None
+    return event if isinstance(event, dict) and event.keys() >= KEYS else None
+
+
+def _is_cut_line(text: bytes) -> bool:
+    """Return whether a text without an end may be the beginning of a line."""
+    return text.startswith(BEGINNING) or BEGINNING.startswith(text)

@@ -18,6 +18,7 @@ from typing import Any
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import written
+from trawl_ros.core.foreign import open_file
 from trawl_ros.core.validation_messages import shown
 from trawl_ros.core.version import __version__
 from trawl_ros.estimation.checkpoint.packing import Packer, Unpacker
@@ -139,7 +140,7 @@ def load_checkpoint(path: Path, fresh: Identification, gear: GearRecord) -> Iden
 
 def _read(path: Path) -> tuple[bytes, bytes]:
     try:
-        with zipfile.ZipFile(path) as archive:
+        with open_file(path, CheckpointError) as file, zipfile.ZipFile(file) as archive:
             members = [archive.getinfo(name) for name in (JSON, NUMBERS)]
             size = sum(member.file_size for member in members)
             if size > MAX_BYTES:

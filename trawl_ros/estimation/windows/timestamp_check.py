@@ -4,15 +4,13 @@ The verdict on a reading depends on the readings of its own channel alone, so it
 however channels interleave.
 """
 
+from trawl_ros.core.stamps import CONFIRM
 from trawl_ros.estimation.windows.records import Rejections, WindowOptions
 from trawl_ros.estimation.windows.watermark import NANO, Watermark
 from trawl_ros.records.channels import CHANNELS, INPUTS, Channel, Reading
 
 BACK_S = 10.0
 """Stamps that go back by more than this (s) are those of a clock set back or a bag that loops."""
-
-CONFIRM = 3
-"""Readings in a row that make a leap ahead credible."""
 
 WINCH = CHANNELS[INPUTS[0]].topic
 

@@ -22,15 +22,14 @@ from trawl_ros.lab.benchmark.modules import without_ros
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.running.chain import MEGABYTE
+from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes, Value
 from trawl_ros.lab.running.timing import median_s
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import steady_state
 
 LIMIT_S, LIMIT_MB = 2.0, 120.0
-DOMAIN = 95
 PATIENCE_S = 15.0
-LOCALHOST = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
 REPEATS = 5
 HEAVIEST = 4
 """Number of packages named that take longest to import."""
@@ -82,10 +81,17 @@ def measure(small: bool) -> Findings:
     asked = MeasuredValue(what, math.nan, 's', at_most(LIMIT_S))
     if (nothing := without_ros(asked)) is not None:
         return nothing
-    with tempfile.TemporaryDirectory() as name, _environment(LOCALHOST), bytecode_kept():
+    with (
+        tempfile.TemporaryDirectory() as name,
+        own_graph(Path(name) / 'log') as graph,
+        _environment(graph),
+        bytecode_kept(),
+    ):
         folder = Path(name)
         chosen = starts(folder)[:1] if small else starts(folder)
-        begun = {start.node: _begun(start, folder, 1 if small else REPEATS) for start in chosen}
+        begun = {
+            start.node: _begun(start, folder, graph, 1 if small else REPEATS) for start in chosen
+        }
     times = {node: [one.seconds for one in starts] for node, starts in begun.items()}
     slowest = max(times, key=lambda node: median(times[node]))
     node = 'bag_recorder' if small else 'sim_node'
@@ -149,16 +155,14 @@ def _memory_rows(
     ]
 
 
-def _begun(start: Start, folder: Path, repeats: int) -> list[Begun]:
-    environment = {
-        'ROS_DOMAIN_ID': str(DOMAIN), 'ROS_LOG_DIR': str(folder / 'log'), **LOCALHOST,
-    }  # fmt: skip
+def _begun(start: Start, folder: Path, environment: Mapping[str, str], repeats: int) -> list[Begun]:
+    domain = int(environment['ROS_DOMAIN_ID'])
     found = []
     for _ in range(repeats):
         with Processes(folder / 'output', environment) as processes:
             if start.needs_truth:
-                _first(processes, TOW)
-            found.append(_first(processes, start))
+                _first(processes, TOW, domain)
+            found.append(_first(processes, start, domain))
         _forget(folder)
     return found
 
@@ -170,7 +174,7 @@ def _forget(folder: Path) -> None:
         bag.rename(folder / f'bag_{time.monotonic_ns()}')
 
 
-def _first(processes: Processes, start: Start) -> Begun:
+def _first(processes: Processes, start: Start, domain: int) -> Begun:
     """Start a node and wait for its first message, at most `PATIENCE_S`.
 
     Raises
@@ -181,7 +185,7 @@ def _first(processes: Processes, start: Start) -> Begun:
     # Imported here, for it needs ROS 2, which reads the environment when it starts.
     from trawl_ros.lab.running.first_message import FirstMessage
 
-    with FirstMessage(DOMAIN, start.node, start.topic) as first:
+    with FirstMessage(domain, start.node, start.topic) as first:
         began = time.perf_counter()
         processes.start(start.node, **start.parameters)
         while (at := first.spin(0.01)) is None:

@@ -8,8 +8,8 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 
 from trawl_ros.messages.diagnostics import read_statuses
+from trawl_ros.nodes.graph.discovery import announce_often
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
-from trawl_ros.nodes.runtime.discovery import announce_often
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.qos import CONSUMER
 

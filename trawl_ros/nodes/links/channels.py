@@ -6,12 +6,14 @@ Without a host it is this machine alone.
 """
 
 import ipaddress
+import math
 import os
 import pty
 import select
 import socket
 import struct
 import termios
+import time
 import tty
 from abc import ABC, abstractmethod
 from contextlib import suppress
@@ -25,6 +27,9 @@ from trawl_ros.core.network import THIS_MACHINE
 
 KINDS = ('udp', 'tcp', 'tcp-listen', 'serial', 'pty')
 MOST_CLIENTS = 8
+SPEAKS_S = 10.0
+"""A client that said nothing for this long makes room for another one."""
+
 READ_BYTES = 65_536
 RECEIVE_BUFFER = 4 << 20
 CONNECT_S = 3.0
@@ -114,6 +119,8 @@ class Channel(ABC):
     """Open link: bytes in and out, none of which waits for longer than it is told."""
 
     datagrams = False
+    turned_away = 0
+    """Clients that found all places taken, or lost theirs to another."""
 
     @abstractmethod
     def poll(self, timeout_s: float) -> list[Received]:
@@ -215,16 +222,24 @@ class _Stream(Channel):
 
     def close(self) -> None:
         if self._link is not None:
-            self._link.unlink(missing_ok=True)
+            with suppress(OSError):
+                # Another link may have taken its place.
+                if str(self._link.readlink()) == os.ttyname(self._also):
+                    self._link.unlink()
         for number in (self._number, self._also):
             if number >= 0:
                 os.close(number)
 
 
 class _Server(Channel):
-    """TCP server: what comes from any client, and the same to all of them."""
+    """TCP server: what comes from any client, and the same to all of them.
 
-    def __init__(self, address: LinkAddress) -> None:
+    Where it ``listens``, clients that say nothing lock nobody out.
+    """
+
+    def __init__(self, address: LinkAddress, *, listens: bool) -> None:
+        self._listens = listens
+        self._heard: dict[int, float] = {}
         self._listener = socket.create_server((address.host, address.port))
         self._listener.setblocking(False)
         self._clients: dict[int, socket.socket] = {}
@@ -232,16 +247,18 @@ class _Server(Channel):
 
     def poll(self, timeout_s: float) -> list[Received]:
         ready = select.select([self._listener, *self._clients.values()], [], [], timeout_s)[0]
+        found = []
         if self._listener in ready:
             with suppress(OSError):
                 client = self._listener.accept()[0]
                 client.setblocking(False)
+                if (silent := self._make_room()) is not None:
+                    found.append(Received(silent, b''))
                 if len(self._clients) < MOST_CLIENTS:
                     self._clients[self._next] = client
                     self._next += 1
                 else:
                     client.close()
-        found = []
         for number, client in list(self._clients.items()):
             if client in ready:
                 try:
@@ -250,9 +267,24 @@ class _Server(Channel):
                 except OSError:
                     host, data = '', b''
                 found.append(Received(number, data, host))
+                self._heard[number] = time.monotonic()
                 if not data:
                     self._drop(number)
         return found
+
+    def _make_room(self) -> int | None:
+        """Drop a client that is silent, the first that never spoke before any other, if all places
+        are taken.
+        """
+        if len(self._clients) < MOST_CLIENTS:
+            return None
+        self.turned_away += 1
+        number = min(self._clients, key=lambda one: self._heard.get(one, -math.inf))
+        silent = time.monotonic() - self._heard.get(number, -math.inf) > SPEAKS_S
+        if not self._listens or not silent:
+            return None
+        self._drop(number)
+        return number
 
     def send(self, data: bytes) -> bool:
         self.poll(0.0)
@@ -273,6 +305,7 @@ class _Server(Channel):
 
     def _drop(self, number: int) -> None:
         self._clients.pop(number).close()
+        self._heard.pop(number, None)
 
 
 def open_channel(address: LinkAddress, *, listens: bool) -> Channel:
@@ -297,7 +330,7 @@ def open_channel(address: LinkAddress, *, listens: bool) -> Channel:
             joined = socket.create_connection((address.host, address.port), CONNECT_S)
             return _Stream(joined.detach())
         case 'tcp-listen':
-            return _Server(address)
+            return _Server(address, listens=listens)
         case 'serial':
             return _Stream(_open_serial(address))
     return _open_pty(address.path)
@@ -319,11 +352,29 @@ def _open_serial(address: LinkAddress) -> int:
 
 
 def _open_pty(path: Path) -> Channel:
-    if os.path.lexists(path) and not path.is_symlink():
-        raise OSError(0, 'there is a file already, expected a new path')
     master, slave = pty.openpty()
-    # Kept open on both ends, so that a reader may come and go.
-    tty.setraw(slave)
-    path.unlink(missing_ok=True)
-    path.symlink_to(os.ttyname(slave))
+    try:
+        # Kept open on both ends, so that a reader may come and go.
+        tty.setraw(slave)
+        name = os.ttyname(slave)
+        if os.path.lexists(path) and not _is_left_over(path, name):
+            raise OSError(0, 'there is something already, expected a new path')
+        path.unlink(missing_ok=True)
+        path.symlink_to(name)
+    except OSError:
+        os.close(master)
+        os.close(slave)
+        raise
     return _Stream(master, slave, path)
+
+
+def _is_left_over(path: Path, name: str) -> bool:
+    """Return whether a link is that of a pseudo-terminal that is gone, as after a kill.
+
+    Its number is free, or is given again to the terminal called ``name``.
+    """
+    if not path.is_symlink():
+        return False
+    target = path.readlink()
+    left = str(target) == name or not target.exists()
+    return left and target.parent == Path('/dev/pts')

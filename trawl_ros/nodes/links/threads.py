@@ -7,8 +7,8 @@ from threading import Event, Lock, Thread
 from typing import NamedTuple
 
 from trawl_ros.core.foreign import short
-from trawl_ros.nodes.links.channels import Channel, LinkAddress, open_channel
-from trawl_ros.sentences.framing import LineSplitter
+from trawl_ros.nodes.links.channels import MOST_CLIENTS, Channel, LinkAddress, open_channel
+from trawl_ros.sentences.framing import SentenceSplitter
 
 WAITING_LINES = 5000
 """Lines that wait at most, in or out; older ones are given up and counted."""
@@ -47,11 +47,18 @@ class LinkThread(ABC):
         self.opened = 0
         self.lines = 0
         self.lost = 0
+        self._channel: Channel | None = None
         self._lock = Lock()
         self._waiting: deque[Line] = deque()
         self._stop = Event()
         self._thread = Thread(target=self._run, name=address.text, daemon=True)
         self._thread.start()
+
+    @property
+    def turned_away(self) -> str:
+        """Sentence on clients that found all places of a server taken; empty without any."""
+        number = 0 if self._channel is None else self._channel.turned_away
+        return f'{number} clients too many, expected at most {MOST_CLIENTS}' if number else ''
 
     def close(self) -> None:
         """End the thread, and wait until it has."""
@@ -69,6 +76,7 @@ class LinkThread(ABC):
             self.state = ''
             self.opened += 1
             try:
+                self._channel = channel
                 self._work(channel)
             except OSError as reason:
                 self.state = short(reason)
@@ -108,10 +116,10 @@ class LineSource(LinkThread):
         return self._take(most)
 
     def _work(self, channel: Channel) -> None:
-        splitters: dict[int, LineSplitter] = {}
+        splitters: dict[int, SentenceSplitter] = {}
         while not self._stop.is_set():
             for source, data, sender in channel.poll(POLL_S):
-                splitter = splitters.setdefault(source, LineSplitter())
+                splitter = splitters.setdefault(source, SentenceSplitter())
                 before = splitter.too_long
                 feed = splitter.datagram if channel.datagrams else splitter.feed
                 for line in feed(data):

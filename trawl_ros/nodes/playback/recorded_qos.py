@@ -43,39 +43,6 @@ def profiles_of(publishers: Sequence[TopicEndpointInfo]) -> tuple[Qos, ...]:
     return tuple(dict.fromkeys(_as_recorded(publisher.qos_profile) for publisher in publishers))
 
 
-def matching(publishers: Sequence[TopicEndpointInfo], profile: QoSProfile) -> QoSProfile:
-    """Return a subscriber's profile that is compatible with all publishers of a topic.
-
-    Parameters
-    ----------
-    publishers
-        Publishers of the topic.
-    profile
-        Profile to ask for as far as they all offer it; its depth is kept.
-    """
-    asked = QoSProfile(
-        history=profile.history,
-        depth=profile.depth,
-        reliability=ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL,
-    )
-    profiles = [publisher.qos_profile for publisher in publishers]
-    if any(other.reliability != asked.reliability for other in profiles):
-        asked.reliability = ReliabilityPolicy.BEST_EFFORT
-    if any(other.durability != asked.durability for other in profiles):
-        asked.durability = DurabilityPolicy.VOLATILE
-    return asked
-
-
-def asks_too_much(asked: QoSProfile, heard: QoSProfile) -> bool:
-    """True if a subscriber asks for more than ``heard``, which all publishers offer."""
-    reliable = asked.reliability == ReliabilityPolicy.RELIABLE
-    latched = asked.durability == DurabilityPolicy.TRANSIENT_LOCAL
-    return bool(reliable and heard.reliability != asked.reliability) or bool(
-        latched and heard.durability != asked.durability
-    )
-
-
 def offered_again(recorded: Sequence[Qos], default: QoSProfile) -> QoSProfile | None:
     """Return the profile of a player in place of the recorded publishers.
 

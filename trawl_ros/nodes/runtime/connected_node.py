@@ -3,10 +3,12 @@
 import time
 from collections.abc import Callable
 from copy import copy
+from dataclasses import dataclass, replace
 from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
@@ -17,10 +19,12 @@ from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import SENTENCE
 from trawl_ros.messages.cdr import serialize
-from trawl_ros.nodes.runtime.graph_checks import (
+from trawl_ros.nodes.graph.graph_checks import (
     SHARED,
     of_one_node,
 )
+from trawl_ros.nodes.graph.matching_qos import asks_more, matching
+from trawl_ros.nodes.graph.source import Source
 from trawl_ros.nodes.runtime.incoming import (
     Incoming,
     believing_clock,
@@ -30,11 +34,24 @@ from trawl_ros.nodes.runtime.incoming import (
 )
 from trawl_ros.nodes.runtime.message_classes import message_class
 from trawl_ros.nodes.runtime.qos import offered, overriding
-from trawl_ros.nodes.runtime.source import Source
 from trawl_ros.nodes.runtime.traffic import Traffic
+from trawl_ros.nodes.runtime.turns import Turns
 from trawl_ros.records.topics import CLOCK, NAMESPACE, find_topic
 
 DIAGNOSTICS = '/diagnostics'
+
+RCLError = rclpy_implementation.RCLError
+
+
+@dataclass(frozen=True)
+class Listener:
+    """Subscription, type of its topic, and what makes another one by a profile and whether
+    users may override that.
+    """
+
+    subscription: Subscription
+    type_name: str
+    subscribe: Callable[[QoSProfile, bool], Subscription]
 
 
 class ConnectedNode(Node):
@@ -51,6 +68,8 @@ class ConnectedNode(Node):
     ----------
     traffic : Traffic
         Counts of messages in and out.
+    turns : Turns
+        Turns of its callbacks.
     exit_code : int or None
         Set by `end`; whoever spins the node then stops.
     """
@@ -61,10 +80,11 @@ class ConnectedNode(Node):
         self.traffic = Traffic()
         self._refused: dict[str, str] = {}
         self._sources: dict[str, Source] = {}
+        self.turns = Turns()
         super().__init__(name, **kwargs)
         self.exit_code: int | None = None
         self._senders: dict[str, Publisher] = {}
-        self._listeners: dict[str, tuple[Subscription, str]] = {}
+        self._listeners: dict[str, Listener] = {}
 
     def full_name(self, topic: str) -> str:
         """Return a topic's full name after namespace and remapping."""
@@ -98,7 +118,13 @@ class ConnectedNode(Node):
     def send_bytes(self, topic: str, data: bytes) -> None:
         """Publish a message that is CDR already."""
         sender = self._senders[topic]
-        sender.publish(data)
+        try:
+            sender.publish(data)
+        except RCLError:
+            # Shut down in the middle of a callback or of a thread's work, ROS hears nothing more.
+            if self.context.ok():
+                raise
+            return
         self.traffic.count('published', sender.topic_name)
 
     def create_subscription(
@@ -133,6 +159,7 @@ class ConnectedNode(Node):
                 lambda reason: self.end(1, reason),
                 source,
                 single,
+                self.turns,
             ),
             *args,
             # Asked for an event while another one comes in, the middleware locks up for ever.
@@ -183,24 +210,43 @@ class ConnectedNode(Node):
             self.traffic.count('received', full)
             handler(data)
 
-        subscription = self.create_subscription(
-            message_class(type_name),
-            topic,
-            take,
-            copy(profile),
-            qos_overriding_options=overriding() if overridable else None,
-            raw=True,
-            single=single,
-        )
-        self._listeners[full] = (subscription, type_name)
+        def subscribe(profile: QoSProfile, overridable: bool) -> Subscription:
+            return self.create_subscription(
+                message_class(type_name),
+                topic,
+                take,
+                profile,
+                qos_overriding_options=overriding() if overridable else None,
+                raw=True,
+                single=single,
+            )
+
+        subscription = subscribe(copy(profile), overridable)
+        self._listeners[full] = Listener(subscription, type_name, subscribe)
         self.traffic.expect('received', full)
+
+    def match_publishers(self) -> None:
+        """Subscribe again, asking for less QoS, where a publisher would not be heard otherwise."""
+        for full, listener in list(self._listeners.items()):
+            asked = listener.subscription.qos_profile
+            heard = matching(self.get_publishers_info_by_topic(full), asked)
+            if asks_more(asked, heard):
+                self.destroy_subscription(listener.subscription)
+                # Parameters of the first subscription would be forced upon this one.
+                again = listener.subscribe(heard, False)
+                self._listeners[full] = replace(listener, subscription=again)
+                offer = f'{heard.reliability.name} and {heard.durability.name}'.lower()
+                self.get_logger().info(f'{full}: hears what its publishers offer, which is {offer}')
 
     def offer(self, service: str, act: Callable[[], str]) -> None:
         """Offer a Trigger service; an error of what it does is its refusal, with reason."""
 
         def answer(request: Any, response: Any) -> Any:
             try:
-                response.success, response.message = True, act()
+                with self.turns as mine:
+                    if not mine:
+                        raise TrawlError('the node is ending')
+                    response.success, response.message = True, act()
             except Exception as reason:
                 response.success, response.message = False, self.refusal(service, reason)
             return response
@@ -215,10 +261,14 @@ class ConnectedNode(Node):
         self.get_logger().error(f'{service}: {sentence}')
         return sentence
 
+    @property
+    def subscribed(self) -> dict[str, str]:
+        """Types of the topics listened to, by full name."""
+        return {full: listener.type_name for full, listener in self._listeners.items()}
+
     def stop_listening(self, topic: str) -> None:
         """Destroy a subscription; its counts stay."""
-        subscription, _ = self._listeners.pop(self.full_name(topic))
-        self.destroy_subscription(subscription)
+        self.destroy_subscription(self._listeners.pop(self.full_name(topic)).subscription)
 
     def refuse(self, topic: str, reason: str) -> None:
         """Count a message that is not used, and log the reason when it is new."""

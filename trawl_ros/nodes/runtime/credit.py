@@ -8,7 +8,9 @@ message that it has fully dealt with.
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections import defaultdict
+from collections.abc import Callable, MutableMapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from trawl_ros.core.errors import MessageError
@@ -40,8 +42,16 @@ SILENT_S = 10.0
 """A consumer not heard for this long has gone."""
 
 STALLED_S = 120.0
-"""A consumer that does not get on for this long is not waited for; a look at a window takes less.
+"""A consumer that has kept the source waiting for this long is not waited for; a look at a window
+takes less.
 """
+
+LEAST_RATE = 0.05
+"""Progress (s of data per s of wall time) below which waiting adds up to `STALLED_S`: a stamp that
+creeps on would otherwise stop the source for good."""
+
+WAITING_S = 30.0
+"""A source that waits for this long for a consumer says so."""
 
 
 def consumer_of(message: Any) -> tuple[str, bool]:
@@ -115,14 +125,38 @@ class ConsumerProgress:
         self._node.send(SYNC, message)
 
 
+@dataclass
+class _Wait:
+    """Wall time (s) for which a consumer has kept the source waiting, less its progress."""
+
+    spent: float = 0.0
+    since: float | None = None
+
+    def begin(self, now: float) -> None:
+        if self.since is None:
+            self.since = now
+
+    def end(self, now: float) -> None:
+        # One second more than it takes to stall, so that it takes some progress to count again.
+        self.spent, self.since = min(self.total(now), STALLED_S + 1.0), None
+
+    def total(self, now: float) -> float:
+        return self.spent + (0.0 if self.since is None else now - self.since)
+
+    def progress(self, data_s: float, now: float) -> None:
+        self.end(now)
+        self.spent = max(0.0, self.spent - data_s / LEAST_RATE)
+
+
 class Consumers:
     """Consumers of a source, and their progress.
 
     Those it needs count from the beginning on. Others count once they have dealt with anything
     of it: what was published before they were there will never reach them, so to wait for
     them would be to wait for ever. The same holds for one that was started anew; and one that
-    is not heard for `SILENT_S`, or has kept the source waiting for `STALLED_S` without getting on,
-    does not count, needed or not, until it is heard or gets on again.
+    is not heard for `SILENT_S`, or has kept the source waiting for `STALLED_S` beyond what its
+    progress is worth at `LEAST_RATE`, does not count, needed or not, until it is heard or gets on
+    again.
 
     Parameters
     ----------
@@ -137,7 +171,7 @@ class Consumers:
         self._names = tuple(names)
         self._stamps: dict[str, int] = {}
         self._heard: dict[str, float] = {}
-        self._waited_for: dict[str, float] = {}
+        self._waits: dict[str, _Wait] = defaultdict(_Wait)
         self._busy: set[str] = set()
         self._span = (0, 0)
         self._subscribers: dict[str, tuple[int, int]] = {}
@@ -160,17 +194,25 @@ class Consumers:
 
     def stalled(self) -> list[str]:
         """Names of consumers that make no progress and are not waited for any more."""
+        return self._kept_waiting(STALLED_S)
+
+    def waited_for(self) -> list[str]:
+        """Names of consumers that the source waits for, and has for some time."""
+        stalled = self.stalled()
+        return [name for name in self._kept_waiting(WAITING_S) if name not in stalled]
+
+    def _kept_waiting(self, least_s: float) -> list[str]:
         now = time.monotonic()
         return [
             name
-            for name, since in self._waited_for.items()
-            if self._present(name) and now - since > STALLED_S
+            for name, wait in self._waits.items()
+            if self._present(name) and wait.total(now) > least_s
         ]
 
     def begin(self, stamp: int) -> None:
         """Begin data time (anew) at a stamp (ns): earlier reports do not count."""
         self._stamps = dict.fromkeys(self._names, stamp)
-        self._waited_for = {}
+        self._waits.clear()
         self._span = (stamp, stamp)
 
     def sent(self, stamp: int) -> None:
@@ -180,13 +222,15 @@ class Consumers:
 
     def followed(self, stamp: int) -> bool:
         """True if all that count have come to a stamp (ns); asked when the source could go on."""
+        now = time.monotonic()
         slowest = self.slowest()
-        if slowest is None or slowest >= stamp:
-            return True
+        followed = slowest is None or slowest >= stamp
         for name, done in self._stamps.items():
-            if done < stamp:
-                self._waited_for.setdefault(name, time.monotonic())
-        return False
+            if not followed and done < stamp:
+                self._waits[name].begin(now)
+            elif name in self._waits:
+                self._waits[name].end(now)
+        return followed
 
     def slowest(self) -> int | None:
         """Return the stamp (ns) that all have reached; None where nobody counts."""
@@ -210,16 +254,37 @@ class Consumers:
         stamp = from_time(message.stamp)
         if name == self._node.get_name():
             return
-        if name not in self._heard and len(self._heard) >= CONSUMERS.value:
-            raise MessageError(f'{SYNC}: one consumer more; expected at most {CONSUMERS}')
+        if name not in self._heard and name not in self._names:
+            self._make_room()
         self._heard[name] = time.monotonic()
         (self._busy.add if busy else self._busy.discard)(name)
         first, latest = self._span
         # Progress outside of what was published since the beginning is from before it, and what
         # was dealt with once stays so.
-        if first < stamp <= latest and stamp > self._stamps.get(name, first):
+        before = self._stamps.get(name, first)
+        if first < stamp <= latest and stamp > before:
             self._stamps[name] = stamp
-            self._waited_for.pop(name, None)
-        elif stamp == NOTHING and self._stamps.get(name, first) > first:
+            if name in self._waits:
+                self._waits[name].progress((stamp - before) / SECOND, time.monotonic())
+        elif stamp == NOTHING and before > first:
             del self._stamps[name]
-            self._waited_for.pop(name, None)
+            self._waits.pop(name, None)
+
+    def _make_room(self) -> None:
+        """Forget the silent, and names of no node, where one more would be too many.
+
+        Raises
+        ------
+        MessageError
+            If there are too many even so.
+        """
+        if len(self._heard) < CONSUMERS.value:
+            return
+        nodes = {*self._node.get_node_names(), *self._names}
+        for name in [one for one in self._heard if one not in nodes or not self._present(one)]:
+            tables: tuple[MutableMapping[str, Any], ...] = self._heard, self._stamps, self._waits
+            for table in tables:
+                table.pop(name, None)
+            self._busy.discard(name)
+        if len(self._heard) >= CONSUMERS.value:
+            raise MessageError(f'{SYNC}: one consumer more; expected at most {CONSUMERS}')

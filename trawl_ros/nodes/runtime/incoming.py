@@ -9,18 +9,16 @@ from typing import Any
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.foreign import short
 from trawl_ros.core.limits import IMAGE_BYTES, MESSAGE_BYTES, SCAN_BYTES, Limit
+from trawl_ros.core.stamps import FAR_NS, Leaps
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import deserialize
 from trawl_ros.messages.stamps import from_time, stamp_of
-from trawl_ros.nodes.runtime.rewinding import CONFIRM
-from trawl_ros.nodes.runtime.source import Source
+from trawl_ros.nodes.graph.source import Source
+from trawl_ros.nodes.runtime.turns import Turns
 from trawl_ros.records.topics import CLOCK
 
-FAR_NS = 60 * SECOND
-"""Stamps further than this from the last on their topic may be false; a slow topic's are not."""
-
 FAR_CLOCK_NS = 10 * SECOND
-"""The same for /clock, which goes on in small steps."""
+"""Stamps of /clock further than this from the last may be false: it goes on in small steps."""
 
 _LARGE: dict[str, Limit] = {
     'sensor_msgs/msg/Image': IMAGE_BYTES,
@@ -48,6 +46,8 @@ class Incoming:
         Judge of who has sent a message; it counts what gets lost.
     single
         True if only what its source has sent is used.
+    turns
+        Of the node's callbacks.
     """
 
     # Asked for both arguments, rclpy gives the message's number along with it.
@@ -61,7 +61,9 @@ class Incoming:
         end: Callable[[str], None],
         source: Source,
         single: bool,
+        turns: Turns,
     ) -> None:
+        self._turns = turns
         self._topic = topic
         self._use = use
         self._refuse = refuse
@@ -73,6 +75,11 @@ class Incoming:
         """Handle a message with the information that ROS has of it."""
         # rclpy's own executor hands over message and info, its events executor a pair of them.
         message, info = arrived if len(arrived) == 2 else arrived[0]
+        with self._turns as mine:
+            if mine:
+                self._handle(message, info)
+
+    def _handle(self, message: Any, info: Any) -> None:
         try:
             alien = not self._source.take(info.get('publication_sequence_number'))
             if alien and self._single:
@@ -87,44 +94,6 @@ class Incoming:
             self._end(str(reason))
         except Exception as reason:
             self._refuse(f'{self._topic}: {error_of_program(reason)}')
-
-
-class Leaps:
-    """Filter of leaping stamps: holds back messages until enough agree.
-
-    Parameters
-    ----------
-    far_ns
-        Largest difference of stamps that is not far, ns.
-    """
-
-    def __init__(self, far_ns: int = FAR_NS) -> None:
-        self._far = far_ns
-        self._newest: int | None = None
-        self._held: list[tuple[int, Any]] = []
-
-    def take(self, stamp: int, message: Any) -> tuple[list[Any], int]:
-        """Filter the next message.
-
-        Returns
-        -------
-        list
-            The messages that can be used now, in the order in which they came.
-        int
-            Number of held-back messages that turned out to be stamped falsely.
-        """
-        held, self._held = self._held, []
-        if self._newest is None or abs(stamp - self._newest) <= self._far:
-            self._newest = stamp
-            return [message], len(held)
-        agreeing = [waiting for waiting in held if abs(stamp - waiting[0]) <= self._far]
-        self._held = [*agreeing, (stamp, message)]
-        false = len(held) - len(agreeing)
-        if len(self._held) < CONFIRM:
-            return [], false
-        self._newest = stamp
-        messages, self._held = [message for _, message in self._held], []
-        return messages, false
 
 
 def size_limit(type_name: str) -> Limit:
@@ -156,11 +125,11 @@ def settling(
     far_ns: int = FAR_NS,
 ) -> Callable[[Any], None]:
     """Make the filter that passes a message once its stamp is confirmed."""
-    leaps = Leaps(far_ns)
+    leaps: Leaps[Any] = Leaps(far_ns)
 
     def take(message: Any) -> None:
         believed, false = leaps.take(stamp_in(message), message)
-        for _ in range(false):
+        for _ in false:
             refuse(f'{topic} is stamped far from its other messages, and only for a moment')
         for message_of_leap in believed:
             use(message_of_leap)

@@ -1,7 +1,9 @@
 """Base class of all nodes: parameters, diagnostics, a clean end."""
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, ClassVar
 
 from rclpy.clock import Clock
@@ -12,29 +14,28 @@ from rclpy.timer import Timer
 from std_srvs.srv import Trigger
 
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.files import free_path, require_writable
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import DIAGNOSIS
+from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
+from trawl_ros.nodes.graph.elsewhere import elsewhere
+from trawl_ros.nodes.graph.graph_checks import clock_status, connection_problems
 from trawl_ros.nodes.runtime.awaiting_service import PERIOD_S, Answer, AwaitingService
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS, ConnectedNode
-from trawl_ros.nodes.runtime.graph_checks import (
-    Listening,
-    clock_status,
-    connection_problems,
-)
 from trawl_ros.nodes.runtime.headway import Headway
 from trawl_ros.nodes.runtime.incoming import (
     error_of_program,
 )
 from trawl_ros.nodes.runtime.introduction import introduction
-from trawl_ros.nodes.runtime.parameters import Parameters, Spec
+from trawl_ros.nodes.runtime.parameters import ParameterError, Parameters, Spec
 from trawl_ros.records.topics import CLOCK
 
 DIAGNOSTICS_PERIOD_S = 1.0
 
 GREETING_S = 0.1
-"""Period at which it is looked whether anybody listens to the first of them."""
+"""Period of the same timer until the first report, which goes out as soon as somebody listens."""
 
 
 class TrawlNode(ConnectedNode):
@@ -70,11 +71,12 @@ class TrawlNode(ConnectedNode):
         self.headway = Headway()
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._said: dict[str, tuple[int, str]] = {}
-        self._closed = False
         self.parameters = Parameters(self, self.SPECS, self.objection, self.parameter_changed)
         self.advertise(DIAGNOSTICS)
-        self.every(DIAGNOSTICS_PERIOD_S, self._diagnose)
-        self._greeting = self.every(GREETING_S, self._greet)
+        # Its period changes after the greeting. Cancelled, a timer that an executor has queued
+        # already would raise there.
+        self._greet_until: float | None = time.monotonic() + DIAGNOSTICS_PERIOD_S
+        self._reporter = self.every(GREETING_S, self._report)
 
     def objection(self, name: str, value: Any) -> str | None:
         """Return an objection to a live parameter's value; None without one."""
@@ -86,6 +88,40 @@ class TrawlNode(ConnectedNode):
     def statuses(self) -> list[Status]:
         """Return the diagnostics of the node's own subsystems."""
         return []
+
+    def new_path(self, parameter: str, *, or_empty: bool = False, suffix: str = '') -> Path | None:
+        """Return where results go by a parameter; None where it is empty.
+
+        A node that is started again, as by ``respawn``, overwrites nothing: its path gets a number.
+
+        Parameters
+        ----------
+        parameter, or_empty, suffix
+            Name of the parameter; the rest as for `free_path`.
+
+        Raises
+        ------
+        ParameterError
+            If nothing can be written there.
+        """
+        wanted = self.parameters[parameter]
+        if not wanted:
+            return None
+        path = free_path(Path(wanted), or_empty=or_empty, suffix=suffix)
+        try:
+            require_writable(path, ParameterError)
+        except ParameterError as reason:
+            raise ParameterError(f'parameter {parameter}: {reason}') from reason
+        if path != Path(wanted):
+            self.get_logger().warning(
+                f'parameter {parameter}: {wanted} exists already and is not written over; this '
+                f'run writes {path}'
+            )
+        return path
+
+    def with_namespace(self, sentence: str) -> str:
+        """Return a sentence on what is missing, with the namespace where the graph has it."""
+        return '; '.join(filter(None, (sentence, elsewhere(self, self.subscribed))))
 
     def finish_work(self) -> None:
         """Finish the node's work; called once, before the last diagnostics."""
@@ -104,9 +140,14 @@ class TrawlNode(ConnectedNode):
         def call() -> None:
             # Raised on, it would come out of the executor, or end other nodes too.
             try:
-                callback()
+                with self.turns as mine:
+                    if mine:
+                        callback()
             except TrawlError as reason:
                 self.end(1, str(reason))
+            except KeyboardInterrupt:
+                # Of a compilation that `run` stops: the executor would print it.
+                self.end(0)
             except Exception as reason:
                 self._note_trouble(callback.__qualname__, error_of_program(reason))
 
@@ -136,9 +177,8 @@ class TrawlNode(ConnectedNode):
 
     def close(self) -> None:
         """Finish work and report the final counts; a second call does nothing."""
-        if self._closed:
+        if not self.turns.end():
             return
-        self._closed = True
         self.finish_work()
         if self.context.ok():
             self._diagnose()
@@ -174,17 +214,24 @@ class TrawlNode(ConnectedNode):
         clock = replace(clock, values={**clock.values, **self.headway.report()})
         return [_bounded(status) for status in (self._traffic_status(), clock, *self.statuses())]
 
-    def _greet(self) -> None:
-        """Report as soon as somebody listens, and not only after the first period."""
+    def _report(self) -> None:
+        """Report each second; for the first time as soon as somebody listens."""
+        self.match_publishers()
+        if self._greet_until is not None:
+            if time.monotonic() < self._greet_until and not self._has_listener():
+                return
+            self._greet_until = None
+            self._reporter.timer_period_ns = round(DIAGNOSTICS_PERIOD_S * SECOND)
+        self._diagnose()
+
+    def _has_listener(self) -> bool:
         if not self._senders[DIAGNOSTICS].get_subscription_count():
-            return
+            return False
         # A clock that is not heard of yet would be reported as missing.
         simulated = self.get_parameter('use_sim_time').value
-        if not simulated or self.get_publishers_info_by_topic(CLOCK.name):
-            self._diagnose()
+        return not simulated or bool(self.get_publishers_info_by_topic(CLOCK.name))
 
     def _diagnose(self) -> None:
-        self._greeting.cancel()
         statuses = self.all_statuses()
         for status in statuses:
             self.say(status.name, status.level, status.message)
@@ -200,18 +247,17 @@ class TrawlNode(ConnectedNode):
     def _traffic_status(self) -> Status:
         problems = connection_problems(
             self,
-            {
-                topic: Listening(type_name, subscription.qos_profile)
-                for topic, (subscription, type_name) in self._listeners.items()
-            },
+            self.subscribed,
             {sender.topic_name: sender.qos_profile for sender in self._senders.values()},
         )
+        if there := elsewhere(self, self.subscribed):
+            problems.append(there)
         if refused := self.traffic.total('refused'):
             last = next(reversed(self._refused.values()))
             problems.append(f'{refused} messages left out, the last because {last}')
         # Older messages of a latched topic are meant to be given up for its newest.
-        for full, (subscription, _) in self._listeners.items():
-            if subscription.qos_profile.durability != DurabilityPolicy.TRANSIENT_LOCAL:
+        for full, listener in self._listeners.items():
+            if listener.subscription.qos_profile.durability != DurabilityPolicy.TRANSIENT_LOCAL:
                 self.traffic.lost(full, self._sources[full].lost)
         if dropped := self.traffic.dropped:
             problems.append(f'{dropped} messages were lost on the way here')

@@ -17,6 +17,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.nodes.runtime.connected_node import ConnectedNode
 
 FIXED = 'read at the start; restart the node to change it'
 
@@ -168,13 +169,15 @@ class Parameters:
 
     def __init__(
         self,
-        node: Node,
+        node: ConnectedNode,
         specs: Sequence[Spec],
         objection: Callable[[str, Any], str | None],
         changed: Callable[[str], None],
     ) -> None:
         self._specs = {spec.name: spec for spec in specs}
         self._values: dict[str, Any] = {}
+        # Another thread may set a parameter while a callback uses it.
+        self._turns = node.turns
         self._objection = objection
         self._changed = changed
         for spec in specs:
@@ -206,7 +209,9 @@ class Parameters:
             if not spec.live and value != self._values.get(spec.name):
                 fixed = f'{spec.name}: {FIXED}'
                 return SetParametersResult(successful=False, reason=fixed)
-            if objection := self._objection(spec.name, value):
+            with self._turns:
+                objection = self._objection(spec.name, value)
+            if objection:
                 return SetParametersResult(successful=False, reason=objection)
         return SetParametersResult(successful=True)
 
@@ -214,8 +219,9 @@ class Parameters:
         for parameter in parameters:
             spec = self._specs.get(parameter.name)
             if spec is not None:
-                self._values[spec.name] = spec.checked(parameter.value)
-                self._changed(spec.name)
+                with self._turns:
+                    self._values[spec.name] = spec.checked(parameter.value)
+                    self._changed(spec.name)
 
 
 def misspelt(node: Node) -> list[str]:

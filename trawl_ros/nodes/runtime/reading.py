@@ -45,7 +45,7 @@ class OneSourceEach:
         Raises
         ------
         MessageError
-            If those so far are of two sources.
+            If those so far are of two sources, or their clock tells no time.
         """
-        if why := self._watches[topic].take(0, sample):
-            raise MessageError(f'{topic} has two sources, for {why}; neither is used')
+        if doubt := self._watches[topic].take(0, sample):
+            raise MessageError(f'{topic} {doubt.text}; it is not used')

@@ -1,13 +1,11 @@
 """Detection of a rewound stream, told from single false stamps."""
 
+from trawl_ros.core.stamps import CONFIRM
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import Sample, WinchSample
 
 BACK_NS = 10 * SECOND
 """Stamps that go back by more than this play anew; less is a message that is late."""
-
-CONFIRM = 3
-"""Readings in a row that make a leap credible."""
 
 MOST_HELD = 2000
 """Samples held back at most: what all instruments say in some ten seconds."""

@@ -1,5 +1,7 @@
 """Runtime of a node: from the command line to a spinning node and to a clean end."""
 
+import logging
+import os
 import re
 import signal
 import sys
@@ -14,14 +16,15 @@ from types import FrameType
 import rclpy
 from rclpy.exceptions import ROSInterruptException
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
-from rclpy.logging import LoggingSeverity, get_logger_level, set_logger_level
+from rclpy.logging import LoggingSeverity, get_logger, get_logger_level, set_logger_level
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
 from trawl_ros.core.errors import TrawlError, sentence_of
+from trawl_ros.core.first_start import COMPILATION, LOG, need_home
 from trawl_ros.core.foreign import short
-from trawl_ros.nodes.runtime import security
-from trawl_ros.nodes.runtime.discovery import announce_often
+from trawl_ros.nodes.graph import security
+from trawl_ros.nodes.graph.discovery import announce_often
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import misspelt
 
@@ -67,6 +70,13 @@ class _StopSignals:
             signal.signal(number, signal.SIG_IGN if self.wishes else handler)
 
 
+class _RosLog(logging.Handler):
+    """Handler that passes records on to the log of ROS."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        get_logger(record.name).info(record.getMessage())
+
+
 def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int:
     """Spin a node until SIGINT, SIGTERM, or until it has come to its end by itself.
 
@@ -84,7 +94,9 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
     """
     arguments = list(sys.argv if args is None else args)
     program = Path(arguments[0]).name if arguments else 'trawl_ros'
-    with _StopSignals() as stop:
+    LOG.addHandler(_RosLog())
+    # A node whose first step compiles could not end before, for a minute.
+    with _StopSignals() as stop, COMPILATION.stopping(lambda: stop.wishes > 0):
         try:
             _open_ros(arguments)
             unknown = remove_ros_args(arguments)[1:]
@@ -97,7 +109,11 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
         except TrawlError as reason:
             print(f'{program}: {sentence_of(reason)}', file=sys.stderr)  # noqa: T201
             return 1
-        except (ExternalShutdownException, ROSInterruptException):
+        except SystemExit as reason:
+            said = f'code of another package ended the node (exit {reason.code})'
+            print(f'{program}: {said}', file=sys.stderr)  # noqa: T201
+            return 1
+        except (ExternalShutdownException, ROSInterruptException, KeyboardInterrupt):
             return 0
         finally:
             rclpy.try_shutdown()
@@ -105,12 +121,17 @@ def run(make: Callable[[], TrawlNode], args: Sequence[str] | None = None) -> int
 
 def _open_ros(arguments: Sequence[str]) -> None:
     announce_often()
+    # ROS 2 refuses to start where its log cannot be written to, but not without a log file.
+    own = need_home() or bool({'ROS_LOG_DIR', 'ROS_HOME'} & os.environ.keys())
+    without_log = [] if own else ['--ros-args', '--disable-external-lib-logs']
     # Its log of wrong arguments is raised as well.
     set_logger_level('rcl', LoggingSeverity.FATAL)
     try:
         with _refusals():
             # ROS's own handlers would close the context before the last words are said.
-            rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
+            rclpy.init(
+                args=[*arguments, *without_log], signal_handler_options=SignalHandlerOptions.NO
+            )
     finally:
         if get_logger_level('rcl') == LoggingSeverity.FATAL:
             set_logger_level('rcl', LoggingSeverity.UNSET)

@@ -39,13 +39,15 @@ class Traffic:
 
     def counts(self, direction: str) -> dict[str, int]:
         """Return the number of messages by full topic name."""
-        return {
-            topic: entry.total for (way, topic), entry in self._counts.items() if way == direction
-        }
+        return {topic: entry.total for (way, topic), entry in self._entries() if way == direction}
 
     def total(self, direction: str) -> int:
         """Return the number of messages of all topics."""
-        return sum(entry.total for (way, _), entry in self._counts.items() if way == direction)
+        return sum(entry.total for (way, _), entry in self._entries() if way == direction)
+
+    def _entries(self) -> list[tuple[tuple[str, str], _Count]]:
+        # Of one instant, since threads count meanwhile.
+        return list(self._counts.items())
 
     @property
     def dropped(self) -> int:
@@ -63,7 +65,7 @@ class Traffic:
         }
         for topic, total in self._lost.items():
             values[f'dropped {topic}'] = str(total)
-        for (direction, topic), entry in list(self._counts.items()):
+        for (direction, topic), entry in self._entries():
             values[f'{direction} {topic}'] = str(entry.total)
             span = now - entry.reported_at
             if span > 0.0:

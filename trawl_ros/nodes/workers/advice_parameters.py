@@ -4,6 +4,7 @@ import math
 
 from trawl_ros.estimation.planning.states import Limits
 from trawl_ros.nodes.runtime.parameters import Flag, Number, ParameterError, Parameters, Text
+from trawl_ros.records.towing_limits import LIMITS
 
 MOST_MANOEUVRES = 200
 """Manoeuvres that are looked up at most; each is a steady state to be solved and ranked."""
@@ -33,8 +34,8 @@ def advice_limits(parameters: Parameters) -> Limits:
         If lengths or speeds are no list of numbers in their range, or are too many.
     """
     limits = Limits(
-        lengths=_numbers(parameters, 'advise_lengths_m', 20.0, 3000.0),
-        speeds=_numbers(parameters, 'advise_speeds_m_s', 0.5, 4.0),
+        lengths=_numbers(parameters, 'advise_lengths_m', *LIMITS.warp_m),
+        speeds=_numbers(parameters, 'advise_speeds_m_s', *LIMITS.speed_m_s),
     )
     number = len(limits.lengths) * len(limits.speeds) * (1 + len(limits.shorter))
     if number > MOST_MANOEUVRES:

@@ -5,6 +5,7 @@ import math
 from trawl_ros.control.trial.records import TrialSettings
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.nodes.runtime.parameters import Number, Parameters, Text
+from trawl_ros.records.towing_limits import LIMITS
 
 DEFAULT = TrialSettings()
 QUANTITIES = 12
@@ -33,10 +34,10 @@ TRIAL_SPECS = (
            live=True),
     Number('winch_speed_m_s', 0.0, 'm/s', 0.0, 3.0, 'Fastest the warps are moved; 0 is what the '
            'gear file says.', live=True),
-    Number('least_speed_m_s', DEFAULT.least_speed, 'm/s', 0.5, 4.0, 'Slowest the gear is to go '
-           'through the water, also while warp runs out.', live=True),
-    Number('most_speed_m_s', DEFAULT.most_speed, 'm/s', 0.5, 4.0, 'Fastest the ship is to go.',
-           live=True),
+    Number('least_speed_m_s', DEFAULT.least_speed, 'm/s', *LIMITS.speed_m_s,
+           'Slowest the gear is to go through the water, also while warp runs out.', live=True),
+    Number('most_speed_m_s', DEFAULT.most_speed, 'm/s', *LIMITS.speed_m_s,
+           'Fastest the ship is to go.', live=True),
     Number('stale_s', DEFAULT.stale, 's', 0.2, 60.0, 'Age at which a reading is stale; one that '
            'comes seldom, at one and a half of its periods.', live=True),
 )  # fmt: skip

@@ -14,6 +14,7 @@ from trawl_ros.model.pattern import SparsityPattern
 from trawl_ros.solver.frontal.elimination import Elimination, elimination
 from trawl_ros.solver.frontal.fronts import factorise, solve
 from trawl_ros.solver.frontal.many_rights import solve_many
+from trawl_ros.solver.linear.search_budget import spend
 
 PIVOT_THRESHOLD = 0.01
 """Least ratio of a diagonal pivot to the largest of its column with which SuperLU keeps it."""
@@ -101,8 +102,11 @@ def factorised(pattern: SparsityPattern, data: FloatArray) -> Factor:
     ------
     RuntimeError
         If the matrix is singular.
+    NoSteadyState
+        If the search under way has spent its budget.
     """
     found = elimination(pattern)
+    spend(found.fill)
     factors, exchanged = np.empty(found.fill, data.dtype), np.empty(pattern.dof, np.int64)
     done = factorise(
         data,

@@ -86,7 +86,9 @@ class Attack:
         return sorted(self._entries)
 
     def feed_sound(self) -> int:
-        """Feed the sound stream; give how many messages the node answered with."""
+        """Feed the sound stream; give how many messages the node answered with, or used where it
+        publishes none.
+        """
         before = self._answers()
         for number, (topic, _, data) in enumerate(self._stream):
             self._give(topic, data)
@@ -137,9 +139,14 @@ class Attack:
                 self._spin()
 
     def _answers(self) -> int:
-        """Give how much was published so far, without what a node says of itself."""
-        counts = self._node.traffic.counts('published')
-        return sum(count for topic, count in counts.items() if topic != DIAGNOSTICS)
+        """Give how much was published so far, without what a node says of itself.
+
+        A node that publishes nothing else, as a viewer does, has answered what it did not refuse.
+        """
+        traffic = self._node.traffic
+        counts = traffic.counts('published')
+        published = sum(count for topic, count in counts.items() if topic != DIAGNOSTICS)
+        return published or traffic.total('received') - traffic.total('refused')
 
     def _give(self, topic: str, data: bytes) -> None:
         entry = self._entries[topic]

@@ -1,10 +1,15 @@
 """Study of hostile messages: every subscription of every node, each node in this process."""
 
+import json
+import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -14,9 +19,18 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.logging import LoggingSeverity
 from rclpy.parameter import Parameter
 
+from trawl_ros.core.network import THIS_MACHINE, free_port
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
+from trawl_ros.core.resources import share_path
 from trawl_ros.estimation.fit.estimate import Estimate
-from trawl_ros.lab.studies.hostile.attack import Attack, AttackTally, Stream, examples_of
+from trawl_ros.lab.running.own_graph import own_graph
+from trawl_ros.lab.studies.hostile.attack import (
+    PATIENCE_S,
+    Attack,
+    AttackTally,
+    Stream,
+    examples_of,
+)
 from trawl_ros.lab.studies.soak.long_tow import write_coarse_gear, write_long_tow
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.commands import fault_command, vessel_command, winch_command
@@ -32,17 +46,23 @@ from trawl_ros.messages.stamps import header
 from trawl_ros.messages.truth_to_messages import clock_message
 from trawl_ros.nodes.autopilot_node import AutopilotNode
 from trawl_ros.nodes.autotrawl_node import AutotrawlNode
+from trawl_ros.nodes.bag_player import BagPlayer
 from trawl_ros.nodes.bag_recorder import BagRecorder
 from trawl_ros.nodes.discrepancy_node import FINDINGS, DiscrepancyNode
 from trawl_ros.nodes.door_sensor_node import DoorSensorNode
+from trawl_ros.nodes.foxglove_node import FoxgloveNode
 from trawl_ros.nodes.identification_node import STATUS, IdentificationNode
+from trawl_ros.nodes.nmea_in import NmeaIn
+from trawl_ros.nodes.nmea_out import NmeaOut
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
 from trawl_ros.nodes.runtime.credit import HEADER
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.sim_node import SimNode
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode
 from trawl_ros.nodes.trial_node import STATUS as TRIAL_STATUS
+from trawl_ros.nodes.trial_node import TrialNode
 from trawl_ros.nodes.vessel_node import VesselNode
+from trawl_ros.nodes.view_node import ViewNode
 from trawl_ros.nodes.winch_node import WinchNode
 from trawl_ros.records.topics import SYNC, absolute
 from trawl_ros.scenario.recording import recorded_messages
@@ -61,9 +81,7 @@ MOST_MOVED = 0.3
 QUICK = {'settle_s': 0.0, 'settle_passages': 0.0, 'window_s': 20.0}
 """Windows such as a short tow has."""
 
-DOMAIN = 231
-STEPS = 11
-"""Nodes, and the estimate."""
+PROTOCOL = 'foxglove.sdk.v1'
 
 Kind = Callable[..., TrawlNode]
 
@@ -107,16 +125,20 @@ def run_hostile(
     minutes
         Length of the sound tow of which they are made.
     """
-    step = step_counter('attacking', STEPS, on_progress)
-    with TemporaryDirectory() as name, _context() as context:
+    with TemporaryDirectory() as name, _context(Path(name) / 'log') as context:
         folder = Path(name)
         gear = write_coarse_gear(folder, 'kaifuha')
         stream = sound_stream(folder, gear, minutes)
         examples = examples_of(stream)
         tallies = []
         kinds = _nodes(folder, gear)
+        # The nodes, and the estimate.
+        step = step_counter('attacking', len(kinds) + 1, on_progress)
         for number, (kind, parameters) in enumerate(kinds):
-            with _running(context, kind, parameters) as (node, executor):
+            with (
+                _running(context, kind, parameters) as (node, executor),
+                _viewer(node, executor, sorted(examples)),
+            ):
                 attack = Attack(node, executor, stream, seed + number)
                 attack.feed_sound()
                 attack.feed_hostile(examples, -(-count // len(kinds)))
@@ -170,7 +192,54 @@ def _nodes(folder: Path, gear: str) -> list[tuple[Kind, dict[str, Any]]]:
         (BagRecorder, {'output': str(folder / 'bag'), 'use_sim_time': True}),
         (IdentificationNode, by_gear | {'advise': False}),
         (DiscrepancyNode, by_gear),
+        (TrialNode, by_gear),
+        (NmeaIn, {'links': [f'udp://:{free_port()}'], 'systems': ['set_points'], 'commands': True}),
+        (NmeaOut, {'links': [f'udp://:{free_port()}'], 'use_sim_time': True}),
+        # Of topics that have no gaps in the bag, which would be published as NaN.
+        (
+            BagPlayer,
+            {
+                'bag': str(share_path('bags', 'sea_trial')),
+                'topics': ['winch/joint_states'],
+                'loop': True,
+            },
+        ),
+        *_viewers(folder),
     ]
+
+
+def _viewers(folder: Path) -> Iterator[tuple[Kind, dict[str, Any]]]:
+    """Give the nodes for viewers, as far as their libraries are installed."""
+    if find_spec('websockets'):
+        yield FoxgloveNode, {'port': free_port(), 'use_sim_time': True}
+    if find_spec('rerun'):
+        output = {'viewer': 'headless', 'output': str(folder / 'tow.rrd')}
+        yield ViewNode, output | {'use_sim_time': True}
+
+
+@contextmanager
+def _viewer(node: Any, executor: SingleThreadedExecutor, topics: list[str]) -> Iterator[None]:
+    """Be a viewer of `foxglove_node`, which then listens to topics; others need none."""
+    if not isinstance(node, FoxgloveNode):
+        yield
+        return
+    from websockets.sync.client import connect
+    from websockets.typing import Subprotocol
+
+    url = f'ws://{THIS_MACHINE}:{node.parameters["port"]}'
+    with connect(url, subprotocols=[Subprotocol(PROTOCOL)], max_size=None) as line:
+        # Read what is passed on and throw it away.
+        Thread(target=lambda: deque(line, 0), daemon=True).start()
+        wishes = [
+            {'id': number, 'channelId': number + 1}
+            for number, topic in enumerate(node._topics)
+            if topic in topics
+        ]
+        line.send(json.dumps({'op': 'subscribe', 'subscriptions': wishes}))
+        end = time.monotonic() + PATIENCE_S
+        while len(node._heard) < len(wishes) and time.monotonic() < end:
+            executor.spin_once(timeout_sec=0.05)
+        yield
 
 
 def _moved(context: Context, gear: str, stream: Stream, seed: int) -> Moved:
@@ -194,13 +263,14 @@ def _moved(context: Context, gear: str, stream: Stream, seed: int) -> Moved:
 
 
 @contextmanager
-def _context() -> Iterator[Context]:
-    context = Context()
-    rclpy.init(args=[], context=context, domain_id=DOMAIN)
-    try:
-        yield context
-    finally:
-        context.try_shutdown()
+def _context(logs: Path) -> Iterator[Context]:
+    with own_graph(logs) as graph:
+        context = Context()
+        rclpy.init(args=[], context=context, domain_id=int(graph['ROS_DOMAIN_ID']))
+        try:
+            yield context
+        finally:
+            context.try_shutdown()
 
 
 @contextmanager

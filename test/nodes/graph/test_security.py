@@ -4,7 +4,7 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
-from trawl_ros.nodes.runtime import security  # noqa: E402
+from trawl_ros.nodes.graph import security  # noqa: E402
 from trawl_ros.nodes.winch_node import main  # noqa: E402
 
 pytestmark = pytest.mark.ros

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from trawl_ros.nodes.runtime.discovery import FILES, VARIABLES, announce_often
+from trawl_ros.nodes.graph.discovery import FILES, VARIABLES, announce_often
 
 NAMES = {'p': 'http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles'}
 

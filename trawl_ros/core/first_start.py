@@ -1,0 +1,190 @@
+"""First start on a machine: where compiled loops are kept, and what is said while they compile."""
+
+import logging
+import os
+import stat
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+LOG = logging.getLogger('trawl_ros.first_start')
+"""Without a handler Python prints its warnings on stderr; nodes hand them to the log of ROS."""
+
+PACKAGE = Path(__file__).parents[1]
+
+QUIET_S = 1.0
+"""A compilation that takes less is not mentioned."""
+
+LINE_EVERY_S = 5.0
+
+USUAL = '20 to 60 s'
+"""Time that the loops of a tow take to compile, on one core of 2020 to 2025."""
+
+
+@dataclass(frozen=True)
+class LoopFolder:
+    """Folder of compiled loops, None where no folder can be written to; ``why`` says so."""
+
+    path: Path | None
+    why: str
+
+
+def loop_folder(environment: Mapping[str, str] = os.environ) -> LoopFolder:
+    """Choose the folder of compiled loops: the first that can be written to.
+
+    The order is ``NUMBA_CACHE_DIR``, the package, the user's cache and a temporary folder.
+    """
+    given = environment.get('NUMBA_CACHE_DIR', '')
+    if given and _takes_files(Path(given)):
+        return LoopFolder(Path(given), f'once: they are kept in {given}')
+    missed = f'NUMBA_CACHE_DIR={given} cannot be written to; ' if given else ''
+    home = _home(environment)
+    cache = environment.get('XDG_CACHE_HOME', '')
+    users = Path(cache) if cache.startswith('/') else home and home / '.cache'
+    for folder in (PACKAGE / '__pycache__' / 'loops', users and users / 'trawl_ros'):
+        if folder is not None and _takes_files(folder):
+            return LoopFolder(folder, f'once on this machine: {missed}they are kept in {folder}')
+    private = private_folder()
+    if private is not None:
+        return LoopFolder(
+            private,
+            f'until {private} is emptied: {missed}neither package nor home can be written to; set '
+            'NUMBA_CACHE_DIR to a folder that stays',
+        )
+    return LoopFolder(
+        None,
+        f'at each start: {missed}neither package, home nor a temporary folder can be written to; '
+        'set NUMBA_CACHE_DIR to a folder that can',
+    )
+
+
+def private_folder() -> Path | None:
+    """Return a temporary folder that no other user can write to; None where there cannot be one.
+
+    Compiled loops are code, so a folder that somebody else has made under this name is not used.
+    """
+    folder = _private_path()
+    if folder is None:
+        return None
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        found = folder.lstat()
+    except OSError:
+        return None
+    own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid()
+    return folder if own and not found.st_mode & 0o022 and _takes_files(folder) else None
+
+
+def _private_path() -> Path | None:
+    try:
+        place = Path(tempfile.gettempdir())
+        # The working folder is the last choice of `tempfile`, where nobody expects a folder.
+        return None if place == Path.cwd() else place / f'trawl_ros-{os.getuid()}'
+    except OSError:
+        return None
+
+
+def need_home() -> bool:
+    """Give this process a temporary home where it has none that can be written to.
+
+    ROS 2, Dask and matplotlib write there; without it the first refuses to start, the second makes
+    a folder named ``~``, and the third warns.
+
+    Returns
+    -------
+    bool
+        False if there is no folder for one.
+    """
+    if _home(os.environ) is None:
+        folder = private_folder()
+        if folder is None:
+            return False
+        os.environ['HOME'] = str(folder)
+    return True
+
+
+def _home(environment: Mapping[str, str]) -> Path | None:
+    home = Path(environment.get('HOME', ''))
+    own = home.is_absolute() and home.is_dir() and _takes_files(home)
+    # The one that `need_home` gave does not stay.
+    return home if own and home != _private_path() else None
+
+
+def _takes_files(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(b'?')
+    except OSError:
+        return False
+    return True
+
+
+class CompilationWatch:
+    """Watch of compilation: it says how far that is, and ends it where a stop is wanted.
+
+    Parameters
+    ----------
+    clock
+        Gives wall time in s.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._stop: Callable[[], bool] = lambda: False
+        self._under_way = 0
+        self._loops = 0
+        self._began_s = 0.0
+        self._spent_s = 0.0
+        self._said_s: float | None = None
+        self.folder: LoopFolder | None = None
+
+    @contextmanager
+    def stopping(self, wanted: Callable[[], bool]) -> Iterator[None]:
+        """While entered, raise KeyboardInterrupt out of a compilation once a stop is wanted."""
+        self._stop = wanted
+        try:
+            yield
+        finally:
+            self._stop = lambda: False
+
+    def begin(self) -> None:
+        """Note that a loop, perhaps one that another needs, begins to be compiled."""
+        if self._under_way == 0:
+            self._began_s = self._clock()
+        self._under_way += 1
+
+    def end(self) -> None:
+        """Note that a loop is compiled, or has failed."""
+        self._loops += 1
+        self._under_way -= 1
+        if self._under_way == 0:
+            self._spent_s += self._clock() - self._began_s
+
+    def step(self) -> None:
+        """Note a step while a loop is compiled: say how far that is, or stop.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If a stop is wanted, in the main thread.
+        """
+        if self._stop() and threading.current_thread() is threading.main_thread():
+            raise KeyboardInterrupt
+        spent = self._spent_s + self._clock() - self._began_s
+        if self._said_s is None and spent >= QUIET_S:
+            why = 'once' if self.folder is None else self.folder.why
+            LOG.warning('compiling the loops of the model takes %s, %s', USUAL, why)
+        elif self._said_s is not None and spent - self._said_s >= LINE_EVERY_S:
+            LOG.warning('compiled %d loops in %.0f s', self._loops, spent)
+        else:
+            return
+        self._said_s = spent
+
+
+COMPILATION = CompilationWatch()
+"""Watch of this process."""

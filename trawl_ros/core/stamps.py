@@ -1,0 +1,246 @@
+"""Judgement of times: which stamp can be when something was measured, and which cannot.
+
+Times are ns since 1970-01-01 UTC. A simulation counts from zero, so a stamp within the first year
+can be one. What was measured lies between 1990 and tomorrow. Receivers without a fix, loggers
+without a battery and drivers that never stamp write other times; so do a week that rolls over
+(1024 weeks) and a date that changes a second late.
+"""
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from itertools import pairwise
+from time import time_ns
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from trawl_ros.core.arrays import BoolArray, StampArray
+from trawl_ros.core.time import SECOND
+
+MessageT = TypeVar('MessageT')
+
+DAY = 86_400 * SECOND
+
+SIMULATED_UNTIL = 365 * DAY
+"""Stamps (ns) below this may be of a simulation, which counts from zero."""
+
+EARLIEST = 631_152_000 * SECOND
+"""1990-01-01 (ns): no log of sentences or bag is older."""
+
+MARGIN_NS = DAY
+"""A stamp may be ahead of this machine's clock by this much: clocks and time zones differ."""
+
+BAG_APART_NS = 30 * DAY
+"""Longest pause (ns) in one recording."""
+
+LOG_APART_NS = 730 * DAY
+"""Longest pause (ns) in one log: a log book may hold two seasons."""
+
+FAR_NS = 60 * SECOND
+"""Stamps further than this from the last on their topic may be false; a slow topic's are not."""
+
+CONFIRM = 3
+"""Stamps in a row that make a leap credible."""
+
+UNSTAMPED = '0, as of a driver that never stamps'
+FUTURE = 'in the future, by the clock of this machine'
+ELSEWHERE = 'far from the rest'
+EXCURSION = 'of another hour or day than those before and behind'
+MOST_LEAPS = 10
+"""Leaps from which on stamps are in no order, unless they are many."""
+
+FEWEST_UNSTAMPED = 3
+"""Stamps of 0 that no simulation gives, where it gives no others."""
+
+
+def when(stamp: int) -> str:
+    """Give a stamp (ns) as date and time, UTC; as a number of seconds where no date has it."""
+    try:
+        time = datetime(1970, 1, 1) + timedelta(microseconds=stamp // 1000)
+    except OverflowError:
+        return f'{stamp // SECOND} s'
+    return f'{time:%Y-%m-%d %H:%M:%S}'
+
+
+def lasting(ns: int) -> str:
+    """Give a time span (ns) in the unit that suits it."""
+    seconds = abs(ns) / SECOND
+    for size, unit in ((365.25 * 86_400, 'years'), (86_400, 'days'), (3600, 'h'), (60, 'min')):
+        if seconds >= 2 * size:
+            return f'{seconds / size:.4g} {unit}'
+    return f'{seconds:.4g} s'
+
+
+def impossible_time(stamp: int, now: int | None = None) -> str | None:
+    """Say why nothing can have been measured at a stamp (ns); None where it can.
+
+    Parameters
+    ----------
+    stamp
+        The stamp.
+    now
+        Present time (ns); by default that of this machine.
+    """
+    if stamp < 0:
+        return 'before 1970'
+    if SIMULATED_UNTIL <= stamp < EARLIEST:
+        return 'before 1990'
+    if stamp >= EARLIEST and stamp > (time_ns() if now is None else now) + MARGIN_NS:
+        return FUTURE
+    return None
+
+
+@dataclass(frozen=True)
+class StampJudgement:
+    """Judgement of the stamps of one recording.
+
+    ``false`` (n,) marks those that cannot be, ``reasons`` counts them. ``span`` is the first and
+    last (ns) of the others, None without any. ``set_back`` are steps back among those, each with
+    the stamps (ns) before and behind it.
+    """
+
+    false: BoolArray
+    reasons: Mapping[str, int]
+    span: tuple[int, int] | None
+    set_back: tuple[tuple[int, int], ...] = ()
+
+    def sentences(self) -> list[str]:
+        """Say what was found, one sentence for each reason."""
+        usual = f'; the others are of {when(self.span[0])}' if self.span else ''
+        found = [f'{count} stamps are {why}{usual}' for why, count in self.reasons.items()]
+        for before, behind in self.set_back:
+            found.append(f'the clock was set back by {lasting(before - behind)} at {when(before)}')
+        return found
+
+
+def judge_stamps(
+    stamps: StampArray, *, apart_ns: int = BAG_APART_NS, in_order: bool = False
+) -> StampJudgement:
+    """Judge the stamps (n,) of one recording by what can be, and by the most of them.
+
+    Parameters
+    ----------
+    stamps
+        Stamps, ns.
+    apart_ns
+        Longest pause between them.
+    in_order
+        True if they stand in the order in which they were written: then some that leap away and
+        back again are false too.
+    """
+    false = np.zeros(len(stamps), dtype=bool)
+    reasons: Counter[str] = Counter()
+    for chosen, why, usual in _by_era(stamps, apart_ns):
+        if why:
+            false[chosen] = not usual
+            reasons[why] += len(chosen)
+    if in_order and (excursions := _excursions(stamps[~false])).any():
+        false[np.flatnonzero(~false)[excursions]] = True
+        reasons[EXCURSION] += int(np.count_nonzero(excursions))
+    true = stamps[~false]
+    span = (int(true.min()), int(true.max())) if len(true) else None
+    return StampJudgement(false, reasons, span, _set_back(true) if in_order else ())
+
+
+def _by_era(stamps: StampArray, apart_ns: int) -> list[tuple[StampArray, str, bool]]:
+    """Split stamps at long pauses; give places, what is wrong or '', and if it is the recording.
+
+    The part with most stamps that can be is the recording. Where none can be, nothing is right.
+    """
+    if not len(stamps):
+        return []
+    order = np.argsort(stamps, kind='stable')
+    # Differences of the extremes of 64 bits do not fit into 64 bits.
+    pauses = np.diff(stamps[order].astype(float))
+    parts = np.split(order, np.flatnonzero(pauses > apart_ns) + 1)
+    judged = []
+    for part in parts:
+        first, last = int(stamps[part[0]]), int(stamps[part[-1]])
+        unstamped = last == 0 == first and (len(parts) > 1 or len(part) >= FEWEST_UNSTAMPED)
+        judged.append((part, UNSTAMPED if unstamped else impossible_time(last) or ''))
+    # Where all is in the future, the clock of this machine may be wrong.
+    possible = [part for part, why in judged if why in ('', FUTURE)]
+    possible = [part for part, why in judged if not why] or possible
+    usual = max(possible, key=len) if possible else None
+    return [
+        (part, why or ('' if part is usual else ELSEWHERE), part is usual) for part, why in judged
+    ]
+
+
+def _excursions(stamps: StampArray) -> BoolArray:
+    """Mark runs of stamps (n,) that leap by more than `FAR_NS` and back again.
+
+    Of three runs the middle one is an excursion if it is shorter than both and the third goes on
+    where the first ended. Where many leap, stamps are in no order, and none is marked.
+    """
+    away = np.zeros(len(stamps), dtype=bool)
+    leaps = np.flatnonzero(abs(np.diff(stamps)) > FAR_NS) + 1
+    if not 2 <= len(leaps) <= max(MOST_LEAPS, len(stamps) // 50):
+        return away
+    bounds = [0, *leaps.tolist(), len(stamps)]
+    runs = list(pairwise(bounds))
+    before = runs[0]
+    for here, behind in zip(runs[1:], [*runs[2:], None], strict=True):
+        if behind is not None:
+            last, first = int(stamps[before[1] - 1]), int(stamps[behind[0]])
+            leap = abs(int(stamps[here[0]]) - last)
+            size = here[1] - here[0]
+            shorter = size < before[1] - before[0] and size < behind[1] - behind[0]
+            if shorter and 0 <= first - last < leap / 2:
+                away[here[0] : here[1]] = True
+                continue
+        before = here
+    return away
+
+
+def _set_back(stamps: StampArray) -> tuple[tuple[int, int], ...]:
+    """Give the steps back by more than `FAR_NS`; none where stamps are in no order."""
+    places = np.flatnonzero(np.diff(stamps) < -FAR_NS)
+    if len(places) > max(MOST_LEAPS, len(stamps) // 50):
+        return ()
+    return tuple((int(stamps[place]), int(stamps[place + 1])) for place in places)
+
+
+class Leaps(Generic[MessageT]):
+    """Filter of leaping stamps: holds back messages until enough agree.
+
+    Parameters
+    ----------
+    far_ns
+        Largest difference of stamps that is not far, ns.
+    """
+
+    def __init__(self, far_ns: int = FAR_NS) -> None:
+        self._far = far_ns
+        self._newest: int | None = None
+        self._held: list[tuple[int, MessageT]] = []
+
+    def take(self, stamp: int, message: MessageT) -> tuple[list[MessageT], list[MessageT]]:
+        """Filter the next message.
+
+        Returns
+        -------
+        list
+            The messages that can be used now, in the order in which they came.
+        list
+            Those held back that turned out to be stamped falsely.
+        """
+        held, self._held = self._held, []
+        if self._newest is None or abs(stamp - self._newest) <= self._far:
+            self._newest = stamp
+            return [message], [waiting for _, waiting in held]
+        agreeing = [waiting for waiting in held if abs(stamp - waiting[0]) <= self._far]
+        false = [waiting[1] for waiting in held if abs(stamp - waiting[0]) > self._far]
+        self._held = [*agreeing, (stamp, message)]
+        if len(self._held) < CONFIRM:
+            return [], false
+        self._newest = stamp
+        messages, self._held = [message for _, message in self._held], []
+        return messages, false
+
+    def give_up(self) -> list[MessageT]:
+        """Give the messages that are held back, which nothing has confirmed."""
+        held, self._held = self._held, []
+        return [message for _, message in held]
