@@ -137,6 +137,9 @@ def draw_board(
         coefficients = _drawn(gear, rng, options.std_factor)
         try:
             points = _rigged(coarse.with_coefficients(coefficients), places, options)
+            if points is None:
+                rejected['not rigged'] += 1
+                continue
             own = with_coefficients(with_fastening(gear, points), coefficients)
             model = build(own)
             steady = _steady_states(model, places)
@@ -160,8 +163,9 @@ def fastened_as(gear: GearRecord, other: GearRecord) -> GearRecord:
 
 def with_fastening(gear: GearRecord, points: FloatArray) -> GearRecord:
     """The gear with other fastening points (3, 3) of warp, upper and lower bridle, m."""
-    warp, upper, lower = (tuple(map(float, point)) for point in points)
-    fastening = FasteningRecord(warp_m=warp, upper_bridle_m=upper, lower_bridle_m=lower)
+    names = 'warp_m', 'upper_bridle_m', 'lower_bridle_m'
+    holes = {name: tuple(point) for name, point in zip(names, points.tolist(), strict=True)}
+    fastening = FasteningRecord.model_validate(holes)
     board = gear.board.model_copy(update={'fastening': fastening})
     return gear.model_copy(update={'board': board})
 
@@ -184,20 +188,21 @@ def _drawn(gear: GearRecord, rng: np.random.Generator, factor: float) -> FloatAr
     return values
 
 
-def _rigged(model: GearModel, places: Sequence[Place], options: BoardDraw) -> FloatArray:
-    """Fastening points (3, 3) for the ends of the range of warps and speeds.
+def _rigged(model: GearModel, places: Sequence[Place], options: BoardDraw) -> FloatArray | None:
+    """Fastening points (3, 3) for the ends of the range of warps and speeds; None where no rigging
+    holds the board at any of them.
 
     Raises
     ------
     NoSteadyState
-        If no rigging is found that holds the board anywhere.
+        If the gear has no shape with boards held at the wanted angles.
     """
     warps, speeds = (sorted({min(part), max(part)}) for part in zip(*places, strict=True))
     ends = list(product(warps, speeds))
     attitude = attitude_at(model, ends[0], options.attack, options.inclination, 0.0)
     held = trim_held(HeldGear(model, attitude, ends), model.board.points, STIFFNESS)
     if not held.usable:
-        raise NoSteadyState(held.found[0].reason, 'not rigged')
+        return None
     wanted = options.attack, roll_for(options.inclination, 0.0), 0.0
     limits = hole_limits(model.board)
     trim = ReleasedTrim(evaluations=options.evaluations)
