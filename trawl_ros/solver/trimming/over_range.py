@@ -185,17 +185,8 @@ def trim_over_range(
     rotations = attitude_at(model, places[0], attack, inclination, pitch)
     coarse = coarsest_model(model)
     held = HeldGear(coarse, rotations, places)
-    best: RangeTrim | None = None
-    start, first = model.board.points, held.states
-    for done, unknown in enumerate(UNKNOWN):
-        on_progress(WorkProgress('riggings', done, len(UNKNOWN)))
-        held.states = first
-        points = _searched(held, start, unknown)
-        found = _released(held, points)
-        if best is None or _worth(found) > _worth(best):
-            best = found
-    on_progress(WorkProgress('riggings', len(UNKNOWN), len(UNKNOWN)))
-    assert best is not None
+    start = model.board.points
+    best = trim_held(held, start, on_progress=on_progress)
     wanted, limits = (attack, roll_for(inclination, pitch), pitch), hole_limits(model.board)
     # Boards answer to the pull of the bridles, which the coarsest net has by some per cent only.
     finer = coarser_model(model) or model
@@ -203,6 +194,45 @@ def trim_over_range(
     tried = *starts, *(released_points(finer, p, limits, wanted, places) for p in starts)
     whole = held if coarse is model else HeldGear(model, rotations, places)
     return max((_released(whole, points) for points in tried), key=_worth)
+
+
+def trim_held(
+    held: HeldGear,
+    start: FloatArray,
+    unknown: Sequence[float] = UNKNOWN,
+    *,
+    on_progress: OnProgress = ignore,
+) -> RangeTrim:
+    """Find fastening points by how stiffly they hold boards at their attitude.
+
+    Parameters
+    ----------
+    held
+        The gear with its boards held at the wanted attitude.
+    start : (3, 3) array
+        Points from which the search starts, m.
+    unknown
+        Parts of the chord by which the centre of pressure may lie elsewhere, tried in turn.
+    on_progress
+        Called before each rigging that is tried, and after the last.
+
+    Returns
+    -------
+    RangeTrim
+        The best of the riggings, with what the released gear does there.
+
+    Raises
+    ------
+    NoSteadyState
+        If the gear has no shape with other points.
+    """
+    first, found = held.states, []
+    for done, part in enumerate(unknown):
+        on_progress(WorkProgress('riggings', done, len(unknown)))
+        held.states = first
+        found.append(_released(held, _searched(held, start, part)))
+    on_progress(WorkProgress('riggings', len(unknown), len(unknown)))
+    return max(found, key=_worth)
 
 
 def _worth(found: RangeTrim) -> tuple[int, float]:

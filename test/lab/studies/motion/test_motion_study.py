@@ -88,18 +88,18 @@ def test_boards_without_a_steady_window_are_drawn_again_and_counted(steady_tow, 
 
     def draw():
         samples, before = next(drawn)
-        return PlantTow(np.zeros(12), 0.0, samples, (), Counter(collapsed=before))
+        return PlantTow(load_gear(coarse_gear), 0.0, samples, (), Counter(collapsed=before))
 
-    found = draw_windowed(draw, lambda: identification_for(load_gear(coarse_gear)), 'finer 3')
+    found = draw_windowed(draw, lambda plant: identification_for(plant.gear), 'finer 3')
     assert found.plant.samples is still
     assert found.rejected == {'without a steady window': 2, 'collapsed': 3}
     assert found.estimate.windows == len(steady_tow.states)
 
 
 def test_a_trial_none_of_whose_boards_has_a_steady_window_says_which_and_why():
-    tow = PlantTow(np.zeros(12), 0.0, (), (), Counter())
+    tow = PlantTow(load_gear('kaifuha'), 0.0, (), (), Counter())
     with pytest.raises(TrawlError, match='finer 3: '):
-        draw_windowed(lambda: tow, lambda: identification_for(load_gear('kaifuha')), 'finer 3')
+        draw_windowed(lambda: tow, lambda plant: identification_for(plant.gear), 'finer 3')
 
 
 @pytest.mark.slow

@@ -120,8 +120,9 @@ def test_plants_have_boards_of_their_own_and_what_is_known_of_them_is_wrong_as_s
     assert np.all((prior.low <= boards) & (boards <= prior.high))
     assert np.ptp((boards - prior.start) / prior.std) > 0.5
     assert not np.array_equal(boards, other.plant.board.coefficients.array())
-    # The model that watches is that of the gear file, on the same course.
-    assert first.gear == course.gear
+    # The model that watches is that of the gear file, but for where its boards are fastened.
+    assert first.gear.board.fastening == first.plant.board.fastening != course.gear.board.fastening
+    assert first.gear.board.coefficients == course.gear.board.coefficients
     assert first.commands == course.commands
     chance = np.random.default_rng(6)
     away = [drawn_knowledge(record, boards, chance).values - boards for _ in range(300)]

@@ -15,8 +15,7 @@ from trawl_ros.lab.studies.sailing.study import SailedBoard, SailingPlan, run_sa
 
 @pytest.fixture(scope='module')
 def sea(coarse_gear):
-    gear = load_gear(coarse_gear)
-    return Sea(gear, gear.board.coefficients.array(), (1, 2))
+    return Sea(load_gear(coarse_gear), (1, 2))
 
 
 def test_windows_of_the_first_states_stay_as_they_were(sea):

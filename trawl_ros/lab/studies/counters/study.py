@@ -19,6 +19,7 @@ from trawl_ros.diagnosis.report.figures import gap_figure
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, between
 from trawl_ros.lab.report.page import Page, Section, write_page
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
@@ -29,6 +30,7 @@ from trawl_ros.lab.studies.discrepancy.trials.plant import draw_plant
 from trawl_ros.lab.studies.discrepancy.trials.tows import BlindTrialPlan, PlannedTow
 from trawl_ros.lab.studies.identification.readings import wrong_by
 from trawl_ros.report.pictures import Drawing
+from trawl_ros.solver.trimming.drawn_board import fastened_as
 
 REPORT = 'counters.md'
 FATHOM = 1.8288
@@ -131,10 +133,11 @@ def run_counters(
     windows, seen = windows_of(looks, chance, plan, sensors)
     floor = floor_of(windows, seen, BASELINE)
     done()
-    with_baseline = _diagnosed(windows, len(planned), BASELINE)
+    gear = fastened_as(FINER.model(GEAR), plant.model.gear)
+    with_baseline = _diagnosed(gear, windows, len(planned), BASELINE)
     done()
     alone = tuple(window for window in windows if window.tow >= BASELINE)
-    without = _diagnosed(alone, len(planned), 0)
+    without = _diagnosed(gear, alone, len(planned), 0)
     done()
     rows = _rows(table, with_baseline, without, floor)
     holdout = with_baseline.holdout
@@ -163,9 +166,11 @@ def run_counters(
     )
 
 
-def _diagnosed(windows: tuple[SteadyWindow, ...], tows: int, baseline: int) -> Diagnosis:
+def _diagnosed(
+    gear: GearRecord, windows: tuple[SteadyWindow, ...], tows: int, baseline: int
+) -> Diagnosis:
     names = [f'tow {number + 1}' for number in range(tows)]
-    return diagnose_windows(FINER.model(GEAR), windows, names, frozenset(range(baseline)))
+    return diagnose_windows(gear, windows, names, frozenset(range(baseline)))
 
 
 def _rows(

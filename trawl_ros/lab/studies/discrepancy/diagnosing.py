@@ -9,28 +9,27 @@ from trawl_ros.diagnosis.report.result import result
 from trawl_ros.estimation.bag_windows import BagTask, read_tow
 from trawl_ros.estimation.tows import numbered
 from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.discrepancy.trials.windows_file import read_windows
-from trawl_ros.lab.studies.identification.plant import Cut
 from trawl_ros.records.topics import NAMESPACE
 
 
 @dataclass(frozen=True)
 class DiagnosisTask:
-    """Case of a blind diagnosis: visible data, folder of the result, the assumed gear, and how
-    many of the first tows are a baseline.
+    """Case of a blind diagnosis: visible data, file of the result, gear file as it is known aboard,
+    and how many of the first tows are a baseline.
     """
 
     seen: Path
     diagnosis: Path
-    gear: str
-    cut: Cut
+    gear: Path
     baseline: int
 
 
 def diagnose_case(case: DiagnosisTask) -> str:
     """Diagnose, write the diagnosis, and give its verdict."""
-    gear = case.cut.model(case.gear)
+    gear = load_gear(case.gear)
     windows, tows = _of_bags(case.seen, gear) if case.seen.is_dir() else _of_file(case.seen)
     found = diagnose_windows(gear, windows, tows, frozenset(range(case.baseline)))
     write_json(case.diagnosis, result(found, ()))

@@ -8,10 +8,12 @@ from shutil import rmtree
 from typing import Any, TypeVar
 
 import numpy as np
+import yaml
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import empty_folder, made_folder, write_json
+from trawl_ros.core.files import empty_folder, made_folder, write_json, write_text
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
+from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.studies.discrepancy.diagnosing import DiagnosisTask, diagnose_case
 from trawl_ros.lab.studies.discrepancy.scoring.costs import COSTS, MAKING, Timed, keep_cost
 from trawl_ros.lab.studies.discrepancy.scoring.quiet import fit_quietly
@@ -19,7 +21,7 @@ from trawl_ros.lab.studies.discrepancy.scoring.rules_hash import rules_hash
 from trawl_ros.lab.studies.discrepancy.scoring.verdicts import Classes, classes, named_right
 from trawl_ros.lab.studies.discrepancy.trials.following import proposed, tow_on
 from trawl_ros.lab.studies.discrepancy.trials.in_bags import make_bags
-from trawl_ros.lab.studies.discrepancy.trials.making import likelihood_of, make
+from trawl_ros.lab.studies.discrepancy.trials.making import gear_aboard, likelihood_of, make
 from trawl_ros.lab.studies.discrepancy.trials.plan import BlindStudyPlan
 from trawl_ros.lab.studies.discrepancy.trials.tows import PLANS
 from trawl_ros.lab.studies.discrepancy.trials.trial import Scored, Spec
@@ -27,7 +29,7 @@ from trawl_ros.lab.studies.discrepancy.trials.windows_file import read_windows, 
 
 Task = TypeVar('Task')
 
-FOLDERS = ('trials', 'keys', 'quiet', 'diagnoses', 'fits')
+FOLDERS = ('gears', 'trials', 'keys', 'quiet', 'diagnoses', 'fits')
 CLASSES = 'classes.json'
 RULES = 'rules.json'
 """Hash of what decides on a verdict, of when the folder was begun."""
@@ -70,14 +72,24 @@ class Blind:
     @property
     def case(self) -> DiagnosisTask:
         """Case for the diagnosis, under a random name alone."""
-        return DiagnosisTask(
-            self.seen, self.at('diagnoses'), self.plan.gear, self.plan.cut, self.baseline
-        )
+        return DiagnosisTask(self.seen, self.at('diagnoses'), self.gear_file, self.baseline)
+
+    @property
+    def gear_file(self) -> Path:
+        """Gear file as it is known aboard."""
+        return self.at('gears').with_suffix('.yaml')
+
+    def write_gear(self) -> None:
+        """Write the gear file."""
+        plan = self.plan
+        known = gear_aboard(plan.gear, plan.cut, plan.seed, self.spec.plant)
+        write_text(self.gear_file, yaml.safe_dump(known.model_dump(mode='json'), sort_keys=False))
 
 
 def make_case(trial: Blind) -> None:
     """Make a trial, and write its visible data and its key apart from each other."""
     plan = trial.plan
+    trial.write_gear()
     if trial.spec.form != 'windows':
         # The rest of an interrupted run is not whole.
         rmtree(trial.seen, ignore_errors=True)
@@ -97,6 +109,7 @@ def follow_case(trial: Blind) -> None:
     on = _followed(trial)
     windows = read_windows(trial.seen)
     key, more = tow_on(trial.spec, plan.gear, plan.cut, plan.seed, windows, tow)
+    on.write_gear()
     if more is not None:
         write_windows(on.seen, more)
     write_json(on.at('keys'), key.record())
@@ -105,7 +118,7 @@ def follow_case(trial: Blind) -> None:
 def quiet_case(trial: Blind) -> None:
     """Fit the rightly named effect to readings without errors."""
     found = fit_quietly(
-        trial.plan.cut.model(trial.plan.gear),
+        load_gear(trial.gear_file),
         read_windows(trial.at('quiet')),
         trial.spec.effects[0],
         frozenset(range(trial.baseline)),

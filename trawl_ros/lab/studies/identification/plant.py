@@ -1,24 +1,16 @@
-"""Plants of the trials, the models fitted to them, and random boards."""
+"""Plants of the trials, the models fitted to them, and what drawn boards show."""
 
-from collections import Counter
 from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.core.errors import NoSteadyState, TrawlError
-from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.observables import OBSERVABLES
-from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_usable
-from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities
-
-MOST_DRAWS = 200
-"""Boards drawn for one trial at most."""
+from trawl_ros.solver.trimming.drawn_board import DrawnBoard, draw_board
 
 State = tuple[float, float]
 """Warp length (m) and speed (m/s) of a steady state."""
@@ -91,75 +83,35 @@ class Look:
 
 @dataclass(frozen=True)
 class TowedBoard:
-    """Board that tows in all states of a trial, its observables tow by tow, and how many
-    were drawn that do not, by reason.
-    """
+    """Board that tows in all states of a trial, and its observables tow by tow."""
 
-    coefficients: FloatArray
+    drawn: DrawnBoard
     tows: tuple[tuple[Look, ...], ...]
-    rejected: Counter[str]
 
 
-def draw_board(
-    gear: GearRecord,
-    prior: ParameterVector,
-    tows: tuple[tuple[State, ...], ...],
-    chance: np.random.Generator,
+def towed_board(
+    gear: GearRecord, tows: tuple[tuple[State, ...], ...], chance: np.random.Generator
 ) -> TowedBoard:
-    """Draw coefficients from the prior until the gear can be towed with them.
+    """Draw boards until one tows in all states of a trial.
 
     Parameters
     ----------
     gear
         The plant.
-    prior
-        Normal, cut at its bounds.
     tows
-        The steady states in which the gear must be usable: stable, under water, and its boards
-        within the range of their law.
+        The steady states, tow by tow.
     chance
         Generator of random numbers.
 
     Raises
     ------
     TrawlError
-        If none of `MOST_DRAWS` boards tows.
+        If none of the boards drawn tows.
     """
-    model = build_model(gear)
-    states = sorted(set(chain.from_iterable(tows)), key=lambda state: (state[1], -state[0]))
-    rejected: Counter[str] = Counter()
-    for _ in range(MOST_DRAWS):
-        drawn = prior.start + prior.std * chance.standard_normal(len(prior.start))
-        if not np.all((prior.low <= drawn) & (drawn <= prior.high)):
-            rejected['out of bounds'] += 1
-            continue
-        board = model.with_coefficients(drawn)
-        found: dict[State, Equilibrium] = {}
-        try:
-            # The slowest first: there most boards fall over, with long warps and with short ones.
-            for state in states:
-                near = _nearest(found, state)
-                point = OperatingPoint(state[0], state[0], state[1])
-                found[state] = find_equilibrium(board, point, near)
-                require_usable(board, found[state])
-        except NoSteadyState as refusal:
-            rejected[refusal.reason] += 1
-            continue
-        looks = {}
-        for state, equilibrium in found.items():
-            jacobian = sensitivities(board, equilibrium)
-            looks[state] = Look(
-                state, equilibrium.observables.array(), jacobian[:, 12:], jacobian[:, :12]
-            )
-        return TowedBoard(
-            drawn, tuple(tuple(looks[state] for state in tow) for tow in tows), rejected
-        )
-    reasons = ', '.join(f'{reason} {count}' for reason, count in rejected.most_common())
-    raise TrawlError(f'none of {MOST_DRAWS} boards drawn from the prior can be towed ({reasons})')
-
-
-def _nearest(found: dict[State, Equilibrium], state: State) -> Equilibrium | None:
-    if not found:
-        return None
-    near = min(found, key=lambda other: abs(other[0] / state[0] - 1) + abs(other[1] / state[1] - 1))
-    return found[near]
+    drawn = draw_board(gear, list(chain.from_iterable(tows)), chance)
+    looks = {}
+    for state, equilibrium in drawn.steady.items():
+        jacobian = sensitivities(drawn.model, equilibrium)
+        values = equilibrium.observables.array()
+        looks[state] = Look(state, values, jacobian[:, 12:], jacobian[:, :12])
+    return TowedBoard(drawn, tuple(tuple(looks[state] for state in tow) for tow in tows))

@@ -14,7 +14,7 @@ from trawl_ros.estimation.fit.objective import paper_values, stack
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.lab.studies.identification.bound import information
 from trawl_ros.lab.studies.identification.kept import TrialTask
-from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS, TowedBoard, draw_board
+from trawl_ros.lab.studies.identification.plant import HELD_OUT, TOWS, TowedBoard, towed_board
 from trawl_ros.lab.studies.identification.readings import (
     SAME_IN_ALL_STATES,
     steady_windows,
@@ -24,6 +24,7 @@ from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import INPUTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
+from trawl_ros.solver.trimming.drawn_board import fastened_as
 
 WRONG_BY = 0.3
 """Noise and biases are larger or smaller than stated by this part."""
@@ -99,9 +100,9 @@ def run_trial(task: Task) -> EstimationTrial:
         If no board drawn can be towed, or no window can be fitted.
     """
     chance = task.chance()
-    gear = task.cut.model(task.gear)
+    board = towed_board(task.cut.plant(task.gear), (*TOWS[: task.tows], HELD_OUT), chance)
+    gear = fastened_as(task.cut.model(task.gear), board.drawn.gear)
     prior = board_prior(gear)
-    board = draw_board(task.cut.plant(task.gear), prior, (*TOWS[: task.tows], HELD_OUT), chance)
     tows, held_out = board.tows[:-1], board.tows[-1]
     sensors = SAME_IN_ALL_STATES if task.stated else wrong_by(WRONG_BY, chance)
     exact = EstimatorOptions(model_error=0.0, state_share=0.0, unsettled=0.0)
@@ -117,14 +118,14 @@ def run_trial(task: Task) -> EstimationTrial:
     return EstimationTrial(
         series=task.series,
         number=task.number,
-        truth=board.coefficients.tolist(),
+        truth=board.drawn.coefficients.tolist(),
         values=estimate.values.tolist(),
         std=estimate.std.tolist(),
         low=estimate.low.tolist(),
         high=estimate.high.tolist(),
         converged=estimate.converged,
         windows=estimate.windows,
-        rejected=dict(board.rejected),
+        rejected=dict(board.drawn.rejected),
         information=information(tows, sensors).tolist(),
         measured=stack([paper_values(window.means) for window in unseen]).tolist(),
         predicted=[[None if np.isnan(value) else value for value in row] for row in predicted],

@@ -12,12 +12,11 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
-from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.nuisances import ADDED_MASS_STD
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.instruments.suite import InstrumentSuite
-from trawl_ros.lab.studies.identification.plant import Look, State, draw_board
+from trawl_ros.lab.studies.identification.plant import Look, State, towed_board
 from trawl_ros.lab.studies.identification.readings import AS_STATED, drawn_errors
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.water import build_water
@@ -56,8 +55,8 @@ class PlantTow:
 
     Attributes
     ----------
-    coefficients : (12,) array
-        Of its boards.
+    gear
+        With the drawn coefficients and the fastening points for them.
     added_mass
         As a part of the cylinder of water around a board.
     samples
@@ -68,16 +67,19 @@ class PlantTow:
         Boards drawn before that cannot be towed, by reason.
     """
 
-    coefficients: FloatArray
+    gear: GearRecord
     added_mass: float
     samples: tuple[Sample, ...]
     held_out: tuple[Look, ...]
     rejected: Counter[str]
 
+    @property
+    def coefficients(self) -> FloatArray:
+        """Coefficients (12,) of its boards."""
+        return self.gear.board.coefficients.array()
 
-def draw_tow(
-    record: GearRecord, prior: ParameterVector, course: Scenario, chance: np.random.Generator
-) -> PlantTow:
+
+def draw_tow(record: GearRecord, course: Scenario, chance: np.random.Generator) -> PlantTow:
     """Draw boards and their added mass until they can be towed, at rest and in time, and the
     calibration of the sensors that read them.
 
@@ -85,8 +87,6 @@ def draw_tow(
     ----------
     record
         The plant.
-    prior
-        Of its boards: normal, cut at its bounds.
     course
         Scenario whose commands are towed.
     chance
@@ -100,18 +100,19 @@ def draw_tow(
     states = tuple((command.port_length, command.speed) for _, command in course.commands)
     rejected: Counter[str] = Counter()
     for _ in range(MOST_DRAWS):
-        board = draw_board(record, prior, (states, HELD_OUT), chance)
-        rejected += board.rejected
+        board = towed_board(record, (states, HELD_OUT), chance)
+        gear = board.drawn.gear
+        rejected += board.drawn.rejected
         added_mass = ADDED_MASS_STD * abs(chance.standard_normal())
         seed = int(chance.integers(2**31))
         try:
-            samples = towed_samples(record, board.coefficients, added_mass, course, seed)
+            samples = towed_samples(gear, board.drawn.coefficients, added_mass, course, seed)
         except (NoSteadyState, StepFailed):
             rejected['in time'] += 1
             continue
         depth, errors = build_water(record).depth, drawn_errors(AS_STATED, chance)
         read = tuple(miscalibrated(sample, depth, *errors) for sample in samples)
-        return PlantTow(board.coefficients, added_mass, read, board.tows[1], rejected)
+        return PlantTow(gear, added_mass, read, board.tows[1], rejected)
     raise TrawlError(f'none of {MOST_DRAWS} boards that can be towed at rest tows the course')
 
 

@@ -12,11 +12,12 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.estimation.bag_motion import STRETCHES, fit_tows
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.objective import paper_values, stack
-from trawl_ros.estimation.from_gear import board_prior, identification_for
+from trawl_ros.estimation.from_gear import identification_for
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.motion.series import tow_readings
 from trawl_ros.estimation.motion.stretches import moving_tow
 from trawl_ros.estimation.pipeline import Identification
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.identification.kept import TrialTask
 from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows
 from trawl_ros.lab.studies.motion.plant import (
@@ -28,6 +29,7 @@ from trawl_ros.lab.studies.motion.plant import (
 )
 from trawl_ros.model.water import build_water
 from trawl_ros.scenario.scenario import load_scenario
+from trawl_ros.solver.trimming.drawn_board import fastened_as
 
 AUTOTRAWLED = 'autotrawled'
 """Series whose winches an autotrawl works."""
@@ -101,7 +103,7 @@ class WindowedTow:
 
 
 def draw_windowed(
-    draw: Callable[[], PlantTow], identify: Callable[[], Identification], name: str
+    draw: Callable[[], PlantTow], identify: Callable[[PlantTow], Identification], name: str
 ) -> WindowedTow:
     """Draw tows until one has a steady window: boards that flutter all the way are towed by nobody,
     and there is nothing to compare with.
@@ -111,7 +113,7 @@ def draw_windowed(
     draw
         Draws a tow.
     identify
-        Makes an identification that knows of none.
+        Makes an identification of a tow, which has read nothing of it.
     name
         Of the trial, for errors.
 
@@ -122,7 +124,8 @@ def draw_windowed(
     """
     rejected: Counter[str] = Counter()
     for _ in range(MOST_DRAWS):
-        plant, identification = draw(), identify()
+        plant = draw()
+        identification = identify(plant)
         rejected += plant.rejected
         for sample in plant.samples:
             identification.feed(sample)
@@ -141,14 +144,15 @@ def run_motion_trial(task: TrialTask) -> MotionTrial:
     TrawlError
         If no board drawn can be towed, or nothing can be fitted.
     """
-    chance, gear = task.chance(), task.cut.model(task.gear)
+    chance = task.chance()
     course = load_scenario(AUTOTRAWLED_COURSE if task.series == AUTOTRAWLED else COURSE)
     windowed = draw_windowed(
-        lambda: draw_tow(task.cut.plant(task.gear), board_prior(gear), course, chance),
-        lambda: identification_for(gear),
+        lambda: draw_tow(task.cut.plant(task.gear), course, chance),
+        lambda plant: identification_for(_aboard(task, plant)),
         task.name,
     )
     plant, identification, estimate = windowed.plant, windowed.identification, windowed.estimate
+    gear = _aboard(task, plant)
     read = tow_readings(plant.samples, build_water(gear).depth, task.name)
     tow = moving_tow(read, task.name, STRETCHES)
     begun = time.process_time()
@@ -196,6 +200,11 @@ def run_motion_trial(task: TrialTask) -> MotionTrial:
         },
         cpu_s=cpu_s,
     )  # fmt: skip
+
+
+def _aboard(task: TrialTask, plant: PlantTow) -> GearRecord:
+    """The gear as it is known aboard: boards fastened as they are, and not their coefficients."""
+    return fastened_as(task.cut.model(task.gear), plant.gear)
 
 
 def _left_out(learned: MotionOutcome) -> float:

@@ -12,17 +12,14 @@ import yaml
 from trawl_ros.core.files import write_text
 from trawl_ros.effects.effect_set import EffectSet
 from trawl_ros.effects.sensor_effects import SensorEffects
-from trawl_ros.estimation.from_gear import board_prior
-from trawl_ros.gear.boards import CoefficientsRecord
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.instruments.suite import InstrumentSuite
-from trawl_ros.lab.studies.identification.plant import draw_board
 from trawl_ros.model.observables import fallen_boards
 from trawl_ros.model.water import build_water
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import Sample
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
+from trawl_ros.solver.trimming.drawn_board import draw_board, fastened_as
 
 COURSE = 'scenario.yaml'
 """File of the course within its folder."""
@@ -76,7 +73,8 @@ def random_course(
 
 
 def with_boards(scenario: Scenario, chance: np.random.Generator) -> Scenario:
-    """The same course, of a plant with boards from the gear file's prior that tow it at rest.
+    """The same course, of a plant with boards from the gear file's prior that tow it at rest; the
+    model's are fastened alike.
 
     Raises
     ------
@@ -84,11 +82,8 @@ def with_boards(scenario: Scenario, chance: np.random.Generator) -> Scenario:
         If none of those drawn tows.
     """
     states = tuple((command.port_length, command.speed) for _, command in scenario.commands)
-    drawn = draw_board(scenario.plant, board_prior(scenario.gear), (states,), chance)
-    board = CoefficientsRecord(**dict(zip(COEFFICIENTS, drawn.coefficients.tolist(), strict=True)))
-    plant = scenario.plant
-    own = plant.model_copy(update={'board': plant.board.model_copy(update={'coefficients': board})})
-    return replace(scenario, plant=own)
+    plant = draw_board(scenario.plant, states, chance).gear
+    return replace(scenario, gear=fastened_as(scenario.gear, plant), plant=plant)
 
 
 def towed_samples(scenario: Scenario, acting: EffectSet) -> Iterator[tuple[list[Sample], bool]]:

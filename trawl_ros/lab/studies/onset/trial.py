@@ -168,9 +168,9 @@ def make_trial(
     spent = fallen_s = 0.0
     with TemporaryDirectory() as folder:
         scenario = random_course(Path(folder), record, minutes, chance)
-        believed = load_gear(Path(folder) / 'gear.yaml')
         try:
             scenario = with_boards(scenario, chance)
+            believed = scenario.gear
             if known_by == 'draw':
                 known = drawn_knowledge(record, scenario.plant.board.coefficients.array(), chance)
             else:

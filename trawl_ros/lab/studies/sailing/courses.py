@@ -52,14 +52,12 @@ class Sea:
     ----------
     gear
         The plant.
-    coefficients
-        Of its board, (12,).
     seed
         Of the readings' errors: calibration of the one tow, and noise.
     """
 
-    def __init__(self, gear: GearRecord, coefficients: FloatArray, seed: Sequence[int]) -> None:
-        self._model = build_model(gear).with_coefficients(coefficients)
+    def __init__(self, gear: GearRecord, seed: Sequence[int]) -> None:
+        self._model = build_model(gear)
         self._seed = list(seed)
         self._looks: dict[Manoeuvre, TowedLook | None] = {}
         self._found: dict[Manoeuvre, Equilibrium] = {}

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
-from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.planning.plan import plan_for
-from trawl_ros.lab.studies.identification.plant import TOWS, Cut, draw_board
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.lab.studies.identification.plant import TOWS, Cut
 from trawl_ros.lab.studies.sailing.courses import (
     Course,
     Sea,
@@ -15,6 +15,7 @@ from trawl_ros.lab.studies.sailing.courses import (
     planned_course,
     sailed_course,
 )
+from trawl_ros.solver.trimming.drawn_board import draw_board, fastened_as
 
 SEED = 2100
 
@@ -62,22 +63,21 @@ class SailedBoard:
 def run_sailing(plan: SailingPlan, on_progress: OnProgress = ignore) -> list[SailedBoard]:
     """Tow each board on its courses.
 
-    The plan is made once, with the board as identification starts; readings err alike on all
-    courses, and the plant is the model.
+    Each is planned with the coefficients as identification starts, fastened as it is; readings err
+    alike on all courses, and the plant is the model.
     """
-    gear = Cut(plan.around).model(plan.gear)
-    trial = plan_for(gear, hours=plan.hours, on_progress=on_progress)
+    unrigged = Cut(plan.around).model(plan.gear)
     boards = []
     for number in range(plan.boards):
-        drawn = draw_board(
-            gear, board_prior(gear), TOWS[:1], np.random.default_rng([plan.seed, number])
-        )
+        drawn = draw_board(unrigged, TOWS[0], np.random.default_rng([plan.seed, number]))
+        gear = fastened_as(unrigged, drawn.gear)
+        trial = plan_for(gear, hours=plan.hours, on_progress=on_progress)
 
         def on_state(text: str, number: int = number) -> None:
             on_progress(WorkProgress('boards', number, plan.boards, 'boards', text))
 
-        def sea(coefficients: object = drawn.coefficients, number: int = number) -> Sea:
-            return Sea(gear, np.asarray(coefficients), (plan.seed, number, 1))
+        def sea(plant: GearRecord = drawn.gear, number: int = number) -> Sea:
+            return Sea(plant, (plan.seed, number, 1))
 
         boards.append(
             SailedBoard(

@@ -12,6 +12,7 @@ from trawl_ros.effects.base.effect import Situation
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.hidden_effects.inside import INSIDE
 from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import CAUSES
@@ -29,6 +30,7 @@ from trawl_ros.lab.studies.identification.readings import (
 )
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.trimming.drawn_board import fastened_as
 
 WRONG_BY = 0.3
 """Noise and biases of each kind of sensor are larger or smaller than stated by this part."""
@@ -208,6 +210,11 @@ def _as_seen(
 @cache
 def _plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
     return draw_plant(gear, cut, seed, number)
+
+
+def gear_aboard(gear: str, cut: Cut, seed: int, number: int) -> GearRecord:
+    """Gear of a plant as it is known aboard: boards fastened as they are, and no more."""
+    return fastened_as(cut.model(gear), _plant(gear, cut, seed, number).model.gear)
 
 
 @cache

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.core.errors import NoSteadyState, TrawlError
-from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import with_other_law
 from trawl_ros.lab.studies.discrepancy.trials.tows import (
@@ -25,12 +24,11 @@ from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities
 from trawl_ros.solver.slow_mode import slow_mode
+from trawl_ros.solver.trimming.drawn_board import BoardDraw, draw_board
 
-MOST_DRAWS = 100
-
-BOARD_SPREAD = 0.5
-"""Boards are drawn with this part of the prior's std: the gear is known as well as from its drawing
-and an earlier trial."""
+DRAW = BoardDraw(std_factor=0.5)
+"""Boards are drawn with half of the prior's std: the gear is known as well as from its drawing and
+an earlier trial."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +103,10 @@ def _solved(model: GearModel, state: State, known: Mapping[State, Clean]) -> Cle
     near = known[nearest(state, tuple(known))].state if known else None
     found = find_equilibrium(model, OperatingPoint(state[0], *state), near)
     require_usable(model, found)
+    return _clean(model, state, found)
+
+
+def _clean(model: GearModel, state: State, found: Equilibrium) -> Clean:
     by = sensitivities(model, found)
     look = Look(state, found.observables.array(), by[:, 12:], by[:, :12])
     return Clean(look, slow_mode(model, found).shape, found)
@@ -126,19 +128,10 @@ def draw_plant(gear: str, cut: Cut, seed: int, number: int) -> Plant:
         If none of many boards can be towed.
     """
     chance = np.random.default_rng([seed, number, *b'plant'])
-    prior = board_prior(cut.model(gear))
-    model = with_other_law(build_model(cut.plant(gear)))
-    order = sorted(STATES, key=lambda state: (state[1], -state[0]))
-    for _ in range(MOST_DRAWS):
-        drawn = prior.start + BOARD_SPREAD * prior.std * chance.standard_normal(len(prior.start))
-        if not np.all((prior.low <= drawn) & (drawn <= prior.high)):
-            continue
-        board = model.with_coefficients(drawn)
-        clean: dict[State, Clean] = {}
-        try:
-            for state in order:
-                clean[state] = _solved(board, state, clean)
-        except NoSteadyState:
-            continue
-        return Plant(board, drawn, clean)
-    raise TrawlError(f'none of {MOST_DRAWS} boards drawn can be towed in all states of the plan')
+    drawn = draw_board(cut.plant(gear), STATES, chance, DRAW, build=_built)
+    clean = {state: _clean(drawn.model, state, found) for state, found in drawn.steady.items()}
+    return Plant(drawn.model, drawn.coefficients, clean)
+
+
+def _built(record: GearRecord) -> GearModel:
+    return with_other_law(build_model(record))

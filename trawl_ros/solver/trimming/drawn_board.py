@@ -1,0 +1,254 @@
+"""Boards for trials: coefficients drawn from the gear's prior, and rigged as a ship would.
+
+Fastening points of one board hold hardly any other: moments that are drawn turn it over. A ship
+moves the shackles until her boards work, so a drawn board is rigged before it is judged.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from scipy.stats import truncnorm
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import NoSteadyState, TrawlError
+from trawl_ros.gear.boards import CoefficientsRecord, FasteningRecord
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.solver.equilibrium import Equilibrium, steady_state
+from trawl_ros.solver.trim import roll_for
+from trawl_ros.solver.trimming.held_gear import HeldGear, attitude_at
+from trawl_ros.solver.trimming.over_range import UNKNOWN, hole_limits, trim_held
+from trawl_ros.solver.trimming.released import ReleasedTrim, released_points
+
+Place = tuple[float, float]
+"""Warp length (m) and speed (m/s) of a steady state."""
+
+STIFFNESS = UNKNOWN[:1]
+"""Shifts of the centre of pressure against which the first rigging is stiff: one is quick."""
+
+NO_BEGINNING = 'no state with the prior mean'
+"""Counts boards that tow, but whose holes hold the prior's mean nowhere: no fit could begin."""
+
+
+@dataclass(frozen=True)
+class BoardDraw:
+    """Options of a draw.
+
+    Attributes
+    ----------
+    attack, inclination
+        Angles for which a board is rigged, rad; it is rigged without pitch.
+    around
+        Meshes around the mouth of the net with which it is rigged.
+    std_factor
+        Part of the prior's std with which coefficients are drawn.
+    most_draws
+        Boards drawn at most.
+    evaluations
+        Of the released board, in which its angles are fitted, at most.
+    """
+
+    attack: float = float(np.radians(20.0))
+    inclination: float = float(np.radians(12.0))
+    around: int = 12
+    std_factor: float = 1.0
+    most_draws: int = 40
+    evaluations: int = 15
+
+
+@dataclass(frozen=True)
+class DrawnBoard:
+    """Board that was drawn and rigged.
+
+    Attributes
+    ----------
+    gear
+        The gear with its coefficients and fastening points.
+    model
+        Model of this gear.
+    steady
+        Its usable steady state at each place.
+    rejected
+        Boards drawn before that cannot be towed at all places, by reason.
+    """
+
+    gear: GearRecord
+    model: GearModel
+    steady: dict[Place, Equilibrium]
+    rejected: Counter[str]
+
+    @property
+    def coefficients(self) -> FloatArray:
+        """Coefficients (12,) in the order of eq. 36."""
+        return self.model.coefficients
+
+    @property
+    def draws(self) -> int:
+        """Number of boards drawn, this one among them."""
+        return 1 + self.rejected.total()
+
+
+def draw_board(
+    gear: GearRecord,
+    places: Sequence[Place],
+    rng: np.random.Generator,
+    options: BoardDraw = BoardDraw(),
+    *,
+    build: Callable[[GearRecord], GearModel] = build_model,
+) -> DrawnBoard:
+    """Draw boards, and rig each, until one can be towed at all places.
+
+    Parameters
+    ----------
+    gear
+        The gear that is towed. Its prior is normal, cut at the bounds.
+    places
+        Warp length (m) and speed (m/s) of each state in which the gear must be usable: stable,
+        under water, and its boards within the range of their law. With the prior's mean it must be
+        so at one end of their range at least, where an identification begins.
+    rng
+        Generator of random numbers.
+    options
+        Angles, and how boards are drawn.
+    build
+        Makes the model of a gear.
+
+    Raises
+    ------
+    TrawlError
+        If none of the boards can be towed.
+    GearError
+        For a gear without boards.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import trawl_ros
+    >>> from trawl_ros.solver.trimming.drawn_board import draw_board
+    >>> gear = trawl_ros.load_gear('kaifuha').refined(net=0.25)
+    >>> drawn = draw_board(gear, [(400.0, 2.2)], np.random.default_rng(0))
+    >>> drawn.gear.board.fastening == gear.board.fastening
+    False
+    """
+    gear.require_boards('that could be drawn')
+    coarse = build(_with_around(gear, min(options.around, gear.netting.around)))
+    rejected: Counter[str] = Counter()
+    for _ in range(options.most_draws):
+        coefficients = _drawn(gear, rng, options.std_factor)
+        try:
+            points = _rigged(coarse.with_coefficients(coefficients), places, options)
+            if points is None:
+                rejected['not rigged'] += 1
+                continue
+            own = with_coefficients(with_fastening(gear, points), coefficients)
+            model = build(own)
+            steady = _steady_states(model, places)
+        except NoSteadyState as refusal:
+            rejected[refusal.reason] += 1
+            continue
+        if not _can_begin(coarse.with_board(points=points), places):
+            rejected[NO_BEGINNING] += 1
+            continue
+        return DrawnBoard(own, model, steady, rejected)
+    reasons = ', '.join(f'{reason} {count}' for reason, count in rejected.most_common())
+    raise TrawlError(
+        f'{gear.name}: none of {options.most_draws} boards drawn from identification can be towed '
+        f'at all of {len(places)} places ({reasons}); expected one: ask for fewer places, or for '
+        'a smaller std'
+    )
+
+
+def fastened_as(gear: GearRecord, other: GearRecord) -> GearRecord:
+    """The gear with its boards fastened as those of another one, as is known aboard."""
+    board = gear.board.model_copy(update={'fastening': other.board.fastening})
+    return gear.model_copy(update={'board': board})
+
+
+def with_fastening(gear: GearRecord, points: FloatArray) -> GearRecord:
+    """The gear with other fastening points (3, 3) of warp, upper and lower bridle, m."""
+    names = 'warp_m', 'upper_bridle_m', 'lower_bridle_m'
+    holes = {name: tuple(point) for name, point in zip(names, points.tolist(), strict=True)}
+    fastening = FasteningRecord.model_validate(holes)
+    board = gear.board.model_copy(update={'fastening': fastening})
+    return gear.model_copy(update={'board': board})
+
+
+def with_coefficients(gear: GearRecord, values: FloatArray) -> GearRecord:
+    """The gear with other coefficients (12,) of its boards, in the order of eq. 36."""
+    record = CoefficientsRecord(**dict(zip(COEFFICIENTS, map(float, values), strict=True)))
+    board = gear.board.model_copy(update={'coefficients': record})
+    return gear.model_copy(update={'board': board})
+
+
+def _drawn(gear: GearRecord, rng: np.random.Generator, factor: float) -> FloatArray:
+    """Coefficients (12,) from the prior, cut at its bounds."""
+    known = gear.identification
+    start, low, high = (np.array(part) for part in (known.start, known.low, known.high))
+    std = factor * np.array(known.std)
+    values: FloatArray = truncnorm.rvs(
+        (low - start) / std, (high - start) / std, start, std, random_state=rng
+    )
+    return values
+
+
+def _rigged(model: GearModel, places: Sequence[Place], options: BoardDraw) -> FloatArray | None:
+    """Fastening points (3, 3) for the ends of the range of warps and speeds; None where no rigging
+    holds the board at any of them.
+
+    Raises
+    ------
+    NoSteadyState
+        If the gear has no shape with boards held at the wanted angles.
+    """
+    ends = _ends(places)
+    attitude = attitude_at(model, ends[0], options.attack, options.inclination, 0.0)
+    held = trim_held(HeldGear(model, attitude, ends), model.board.points, STIFFNESS)
+    if not held.usable:
+        return None
+    wanted = options.attack, roll_for(options.inclination, 0.0), 0.0
+    limits = hole_limits(model.board)
+    trim = ReleasedTrim(evaluations=options.evaluations)
+    return released_points(model, held.points, limits, wanted, ends, trim)
+
+
+def _can_begin(model: GearModel, places: Sequence[Place]) -> bool:
+    """True if boards of the prior's mean can be towed at any end of the range of places."""
+    mean = model.with_coefficients(np.array(model.gear.identification.start))
+    for place in _ends(places):
+        try:
+            steady_state(mean, *place)
+        except NoSteadyState:
+            continue
+        return True
+    return False
+
+
+def _ends(places: Sequence[Place]) -> list[Place]:
+    """Ends of the range of warps and speeds."""
+    warps, speeds = (sorted({min(part), max(part)}) for part in zip(*places, strict=True))
+    return list(product(warps, speeds))
+
+
+def _steady_states(model: GearModel, places: Sequence[Place]) -> dict[Place, Equilibrium]:
+    """Usable steady states at all places."""
+    found: dict[Place, Equilibrium] = {}
+    # The slowest first: there most boards fall over, with long warps and with short ones.
+    for place in sorted(set(places), key=lambda place: (place[1], -place[0])):
+        found[place] = steady_state(model, *place, start=_nearest(found, place)).equilibrium
+    return found
+
+
+def _nearest(found: dict[Place, Equilibrium], place: Place) -> Equilibrium | None:
+    if not found:
+        return None
+    near = min(found, key=lambda other: abs(other[0] / place[0] - 1) + abs(other[1] / place[1] - 1))
+    return found[near]
+
+
+def _with_around(gear: GearRecord, around: int) -> GearRecord:
+    netting = gear.netting.model_copy(update={'around': around})
+    return gear.model_copy(update={'netting': netting})
