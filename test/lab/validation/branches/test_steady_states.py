@@ -45,9 +45,9 @@ def test_a_walk_reaches_what_neighbours_lead_to_and_searches_the_rest_cold(
 ) -> None:
     verdicts = {spot: answer.verdict for spot, answer in lattice.answers.items()}
     assert verdicts == {
-        (0, 0): 'fold',
+        (0, 0): 'none found',
         (0, 1): 'usable',
-        (1, 0): 'fold',
+        (1, 0): 'none found',
         (1, 1): 'usable',
     }
     # Cold at the start, then once from the neighbour and, a third of them, cold once more.
