@@ -9,9 +9,37 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.validation.sea.changes import CHANGES
 from trawl_ros.lab.validation.sea.hauls import counted, run
-from trawl_ros.lab.validation.sea.modelled import ModelledHaul, right_sign
-from trawl_ros.lab.validation.sea.published import PublishedHauls, published_hauls
+from trawl_ros.lab.validation.sea.modelled import ModelledHaul, is_right, modelled_trend
+from trawl_ros.lab.validation.sea.published import (
+    PublishedHauls,
+    TrendRecord,
+    published_hauls,
+)
+from trawl_ros.lab.validation.sea.tables import ratios_table, trends_table
 from trawl_ros.records.observables import OBSERVABLES, Observables
+
+FIRST, SECOND = '150 m, 1.1 m/s', '150 m, 1.8 m/s'
+"""Two hauls of four_seam."""
+
+
+def trend(**kind: object) -> TrendRecord:
+    """Trend of the door spread between these hauls."""
+    given = {'gear': 'four_seam', 'by': 'speed', 'quantity': 'door_spread', 'source': 'lee_1986'}
+    return TrendRecord.model_validate({**given, 'first': FIRST, 'second': SECOND, **kind})
+
+
+def towed(
+    published: PublishedHauls, first: float | None, second: float | None
+) -> dict[tuple[str, str], ModelledHaul]:
+    """These hauls with door spreads (m) of the model; None without a steady state."""
+    gear = next(gear for gear in published.gears if gear.gear == 'four_seam')
+    hauls = {haul.name: haul for haul in gear.hauls}
+    return {
+        (gear.gear, name): ModelledHaul(
+            gear, hauls[name], None if spread is None else seen(door_spread=spread)
+        )
+        for name, spread in ((FIRST, first), (SECOND, second))
+    }
 
 
 def seen(**values: float) -> Observables:
@@ -80,21 +108,63 @@ def test_an_error_is_relative_and_infinite_without_a_steady_state(
     assert ModelledHaul(gear, haul, None, 'none').error(point) == math.inf
 
 
-def test_a_trend_is_right_only_with_both_states(published: PublishedHauls) -> None:
-    trend = published.trends[0]
-    gear = next(gear for gear in published.gears if gear.gear == trend.gear)
-    first, second = (
-        next(haul for haul in gear.hauls if haul.name == name)
-        for name in (trend.first, trend.second)
-    )
-    low = ModelledHaul(gear, first, seen(**{trend.quantity: 1.0}))
-    high = ModelledHaul(gear, second, seen(**{trend.quantity: 2.0}))
-    keys = (trend.gear, trend.first), (trend.gear, trend.second)
-    assert trend.sign == 1
-    assert right_sign(trend, dict(zip(keys, (low, high), strict=True)))
-    assert not right_sign(trend, dict(zip(keys, (high, low), strict=True)))
-    lost = ModelledHaul(gear, second, None)
-    assert not right_sign(trend, dict(zip(keys, (low, lost), strict=True)))
+@pytest.mark.parametrize(
+    ('kind', 'spreads', 'right'),
+    [
+        ({'sign': 1}, (1.0, 2.0), True),
+        ({'sign': 1}, (2.0, 1.0), False),
+        ({'sign': -1}, (2.0, 1.0), True),
+        ({'sign': 1}, (1.0, None), False),
+        ({'within': 1.5}, (50.0, 51.0), True),
+        ({'within': 1.5}, (51.0, 50.0), True),
+        ({'within': 1.5}, (50.0, 52.0), False),
+        ({'within': 1.5}, (None, 50.0), False),
+    ],
+)
+def test_a_sign_or_bound_is_right_only_with_both_states(
+    published: PublishedHauls,
+    kind: dict[str, object],
+    spreads: tuple[float | None, float | None],
+    right: bool,
+) -> None:
+    assert trend(**kind).counts
+    assert is_right(trend(**kind), towed(published, *spreads)) == right
+
+
+def test_ratios_and_slopes_are_of_the_models_own_changes(published: PublishedHauls) -> None:
+    hauls = towed(published, 50.0, 56.0)
+    ratio, slope = trend(ratio=1.05), trend(slope=3.0, per='speed_kn')
+    assert not ratio.counts
+    assert modelled_trend(ratio, hauls) == pytest.approx(1.12)
+    assert modelled_trend(slope, hauls) == pytest.approx(6.0 / (3.4989 - 2.1382))
+    assert math.isnan(modelled_trend(slope, towed(published, 50.0, None)))
+    trends = [ratio, slope, trend(sign=1)]
+    assert [row[4:6] for row in ratios_table(trends, hauls).rows] == [
+        ('+5.0 %', '+12.0 %'),
+        ('3.000 per knot', '4.409 per knot'),
+    ]
+    assert len(trends_table(trends, hauls).rows) == 1
+
+
+@pytest.mark.parametrize(
+    ('kind', 'message'),
+    [
+        ({}, 'found none, expected one of'),
+        ({'sign': 1, 'ratio': 1.2}, 'found sign, ratio, expected one of'),
+        ({'slope': 1.0}, 'per: expected with a slope'),
+        ({'sign': 1, 'per': 'warp_m'}, 'per: expected with a slope'),
+    ],
+)
+def test_a_trend_is_of_one_kind(kind: dict[str, object], message: str) -> None:
+    with pytest.raises(ValidationError, match=message):
+        trend(**kind)
+
+
+def test_a_slope_is_between_two_values(published: PublishedHauls) -> None:
+    data = published.model_dump()
+    data['trends'] = (trend(slope=0.3, per='warp_m').model_dump(),)
+    with pytest.raises(ValidationError, match='found the same warp_m'):
+        PublishedHauls.model_validate(data)
 
 
 def test_the_small_version_tells_its_points_beside_the_model() -> None:

@@ -46,4 +46,14 @@ def test_the_mouth_lies_within_its_width_and_height_and_grows_with_either(
     assert 0.5 * width * height < area < width * height
     wide = replace(state, nodes=state.nodes * np.array([1.0, 2.0, 1.0]))
     assert mouth_area(model, wide) == pytest.approx(2.0 * area)
-    assert set(quantities(model, steady)) == set(DERIVED)
+
+
+def test_the_lower_bridle_and_the_angle_are_those_of_the_boards(
+    model: GearModel, steady: SteadyState
+) -> None:
+    derived, seen = quantities(model, steady), steady.observables
+    assert set(derived) == set(DERIVED)
+    pulls = rope_pulls(model, steady.equilibrium.state, steady.equilibrium.tow)
+    lower = float(np.linalg.norm(pulls[0, 2]))
+    assert derived['lower_bridle_tension'] == pytest.approx(lower, rel=1e-3)
+    assert np.radians(derived['board_attack']) == pytest.approx(seen.port_attack, rel=1e-3)

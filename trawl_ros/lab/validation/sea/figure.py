@@ -15,6 +15,8 @@ MARKS = {
     'horizontal_opening': 'D',
     'warp_tension': 'P',
     'net_drag': 'X',
+    'lower_bridle_tension': 'd',
+    'board_attack': '>',
     'mouth_area': '*',
 }
 
@@ -22,7 +24,7 @@ MARKS = {
 def haul_figure(
     points: Sequence[tuple[str, str, float, float, str]], near_percent: float
 ) -> Figure:
-    """Model over sea, both logarithmic: lengths (m), areas (m²) and, beside them, forces (kN).
+    """Model over sea, both logarithmic: lengths (m), areas (m²), angles (°); forces (kN) apart.
 
     Parameters
     ----------
@@ -33,7 +35,7 @@ def haul_figure(
     """
     forces = [p for p in points if p[1] in FORCES]
     lengths = [p for p in points if p[1] not in FORCES]
-    groups = [('m, m²', 1.0, lengths)] + ([('kN', 1e-3, forces)] if forces else [])
+    groups = [('m, m², °', 1.0, lengths)] + ([('kN', 1e-3, forces)] if forces else [])
     gears = list(dict.fromkeys(p[0] for p in points))
     figure = Figure(figsize=(5.2 * len(groups), 4.8), layout='constrained')
     for axes, (unit, scale, group) in zip(

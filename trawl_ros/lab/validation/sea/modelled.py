@@ -64,9 +64,32 @@ def modelled(gear: GearHauls, *, small: bool) -> list[ModelledHaul]:
     return results
 
 
-def right_sign(trend: TrendRecord, hauls: Mapping[tuple[str, str], ModelledHaul]) -> bool:
-    """True if the model changes as the source says; false where a steady state is missing."""
+Modelled = Mapping[tuple[str, str], ModelledHaul]
+"""Hauls by gear and name."""
+
+
+def is_right(trend: TrendRecord, hauls: Modelled) -> bool:
+    """True if the model changes as a sign or bound says; false without both steady states."""
+    first, second = _ends(trend, hauls)
+    if trend.within is not None:
+        return bool(abs(second - first) <= trend.within)
+    assert trend.sign is not None
+    return bool(trend.sign * (second - first) > 0.0)
+
+
+def modelled_trend(trend: TrendRecord, hauls: Modelled) -> float:
+    """Ratio or slope of the model where the source prints one; NaN without both steady states."""
+    first, second = _ends(trend, hauls)
+    if trend.per is None:
+        return second / first
+    start, end = (
+        getattr(hauls[trend.gear, name].haul, trend.per) for name in (trend.first, trend.second)
+    )
+    return float((second - first) / (end - start))
+
+
+def _ends(trend: TrendRecord, hauls: Modelled) -> tuple[float, float]:
     first, second = (
         hauls[trend.gear, name].value(trend.quantity) for name in (trend.first, trend.second)
     )
-    return bool(trend.sign * (second - first) > 0.0)
+    return first, second

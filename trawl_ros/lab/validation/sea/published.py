@@ -9,6 +9,7 @@ from trawl_ros.core.resources import share_path
 from trawl_ros.core.schema import FrozenDict, Numbers, Record, load_yaml, validated
 from trawl_ros.gear.drag_bands import KNOT
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.lab.validation.sea.thinner import ThinnerRecord, thinner
 
 FILE = ('config', 'hauls', 'published.yaml')
 
@@ -21,9 +22,12 @@ Quantity = Literal[
     'warp_tension',
     'net_drag',
     'mouth_area',
+    'lower_bridle_tension',
+    'board_attack',
 ]
 """Measured quantity, by its name among the `Observables` or `DERIVED`; m, m² for the area of the
-mouth, and N for the tension of one warp and the drag of the net.
+mouth, N for the tension of one warp or bridle and the drag of the net, and degrees for the attack
+angle of the boards.
 """
 
 Use = Literal['counts', 'tunes', 'told']
@@ -48,7 +52,9 @@ class PointRecord(Record):
 
 
 class HaulRecord(Record):
-    """Haul: length of each warp, speed through the water, weights in water that were changed."""
+    """Haul: length of each warp, speed through the water, weights in water that were changed, and
+    twine that the net had less of than its plan says.
+    """
 
     name: str
     use: Use
@@ -56,6 +62,7 @@ class HaulRecord(Record):
     warp_m: Annotated[float, Field(gt=0)]
     speed_kn: Annotated[float, Field(gt=0)]
     hung_weight_in_water_n: Numbers = FrozenDict()
+    thinner: ThinnerRecord | None = None
     points: tuple[PointRecord, ...]
 
     @property
@@ -69,8 +76,10 @@ class HaulRecord(Record):
         Raises
         ------
         TrawlError
-            If it has no weight of a name that the haul gives.
+            If it has no weight of a name that the haul gives, or no net plan to be thinner, or
+            too little twine.
         """
+        gear = self._with_net(gear)
         weights = self.hung_weight_in_water_n
         missing = set(weights) - {item.name for item in gear.hung}
         if missing:
@@ -85,6 +94,20 @@ class HaulRecord(Record):
             for item in gear.hung
         )
         return gear.model_copy(update={'hung': hung})
+
+    def _with_net(self, gear: GearRecord) -> GearRecord:
+        if self.thinner is None:
+            return gear
+        where = f'{"/".join(FILE)}: haul {self.name} of {gear.name}'
+        plan = gear.netting.plan
+        if plan is None:
+            raise TrawlError(f'{where}: thinner: found a net without a plan, expected one')
+        try:
+            plan = thinner(plan, self.thinner)
+        except TrawlError as reason:
+            raise TrawlError(f'{where}: {reason}') from reason
+        netting = gear.netting.model_copy(update={'plan': plan})
+        return gear.model_copy(update={'netting': netting})
 
 
 class GearHauls(Record):
@@ -111,14 +134,57 @@ class GearHauls(Record):
 
 
 class TrendRecord(Record):
-    """Trend: sign of a quantity's change from the first haul to the second, as sources print it."""
+    """Trend: change of a quantity from the first haul to the second, as sources print it.
+
+    Exactly one of these is given; signs and bounds count, ratios and slopes are shown only.
+
+    Attributes
+    ----------
+    sign
+        Sign of the change.
+    within
+        Bound on the change, of either sign, in the unit of the quantity.
+    ratio
+        Second value over the first.
+    slope
+        Change of the quantity per unit of ``per``.
+    """
 
     gear: str
     by: str
     quantity: Quantity
     first: str
     second: str
-    sign: Literal[-1, 1]
+    sign: Literal[-1, 1] | None = None
+    within: Annotated[float, Field(gt=0)] | None = None
+    ratio: Annotated[float, Field(gt=0)] | None = None
+    slope: float | None = None
+    per: Literal['warp_m', 'speed_kn'] | None = None
+    source: str
+
+    @property
+    def counts(self) -> bool:
+        """True for a sign or a bound, which is right or wrong."""
+        return self.sign is not None or self.within is not None
+
+    @model_validator(mode='after')
+    def _one_kind(self) -> 'TrendRecord':
+        kinds = ('sign', 'within', 'ratio', 'slope')
+        found = [kind for kind in kinds if getattr(self, kind) is not None]
+        if len(found) != 1:
+            raise ValueError(
+                f'found {", ".join(found) or "none"}, expected one of {", ".join(kinds)}'
+            )
+        if (self.slope is None) != (self.per is None):
+            raise ValueError('per: expected with a slope, and with nothing else')
+        return self
+
+
+class ReferenceRecord(Record):
+    """Accuracy that others reached at sea: largest errors of depth and of drag, %."""
+
+    depth_percent: Annotated[float, Field(gt=0)]
+    drag_percent: Annotated[float, Field(gt=0)]
     source: str
 
 
@@ -130,23 +196,33 @@ class UnusedSource(Record):
 
 
 class PublishedHauls(Record):
-    """All published hauls: sources by name, hauls by gear, trends, and what was not used."""
+    """All published hauls: sources by name, hauls by gear, trends, what was not used, and the
+    accuracy to compare with.
+    """
 
     sources: dict[str, HaulSource]
+    reference: ReferenceRecord
     gears: Annotated[tuple[GearHauls, ...], Field(min_length=1)]
     trends: tuple[TrendRecord, ...]
     not_used: tuple[UnusedSource, ...]
 
     @model_validator(mode='after')
     def _named(self) -> 'PublishedHauls':
-        hauls = {(gear.gear, haul.name) for gear in self.gears for haul in gear.hauls}
+        hauls = {(gear.gear, haul.name): haul for gear in self.gears for haul in gear.hauls}
         for trend in self.trends:
             for name in (trend.first, trend.second):
                 if (trend.gear, name) not in hauls:
                     raise ValueError(
                         f'trends: found haul {name} of {trend.gear}, expected one of its hauls'
                     )
+            ends = [hauls[trend.gear, name] for name in (trend.first, trend.second)]
+            if trend.per is not None and len({getattr(haul, trend.per) for haul in ends}) == 1:
+                raise ValueError(
+                    f'trends: found the same {trend.per} in {trend.first} and {trend.second} of '
+                    f'{trend.gear}, expected two values for a slope'
+                )
         named = {trend.source for trend in self.trends} | {gear.source for gear in self.gears}
+        named.add(self.reference.source)
         for gear in self.gears:
             named |= {p.source for haul in gear.hauls for p in haul.points if p.source}
         if named - set(self.sources):

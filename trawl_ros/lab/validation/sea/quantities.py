@@ -1,4 +1,4 @@
-"""Quantities that sources print beside the observables: drag of the net, area of its mouth."""
+"""Quantities that sources print besides the observables: drag, area, tension, attack angle."""
 
 import numpy as np
 
@@ -8,27 +8,35 @@ from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.equilibrium import SteadyState
 from trawl_ros.solver.trimming.held_boards import rope_pulls
 
-DERIVED = ('net_drag', 'mouth_area')
+DERIVED = ('net_drag', 'mouth_area', 'lower_bridle_tension', 'board_attack')
 """Names of these quantities."""
 
 
 def quantities(model: GearModel, steady: SteadyState) -> dict[str, float]:
-    """Quantities of `DERIVED` in a steady state, N and m²."""
-    found = steady.equilibrium
+    """Quantities of `DERIVED` in a steady state: N, m², N and degrees.
+
+    Tension of the lower bridle is its mean pull at the boards, where a sweep takes its place; the
+    attack angle is the mean of both boards.
+    """
+    found, seen = steady.equilibrium, steady.observables
+    # Of the three points of a board the first is the warp's, the last the lower bridle's.
+    pulls = rope_pulls(model, found.state, found.tow)
+    lower = np.linalg.norm(pulls[:, 2], axis=-1)
     return {
-        'net_drag': net_drag(model, found.state, found.tow),
+        'net_drag': net_drag(pulls, found.tow),
         'mouth_area': mouth_area(model, found.state),
+        'lower_bridle_tension': float(lower.mean()),
+        'board_attack': float(np.degrees(0.5 * (seen.port_attack + seen.starboard_attack))),
     }
 
 
-def net_drag(model: GearModel, state: State, tow: Tow) -> float:
+def net_drag(pulls: FloatArray, tow: Tow) -> float:
     """Drag (N) of all that is behind the boards: the pull of sweeps and bridles on them against the
-    course.
+    course, from the ``pulls`` (2, 3, 3) at the boards' fastening points.
     """
-    # Of the three points of a board the first is the warp's.
-    pull = rope_pulls(model, state, tow)[:, 1:].sum(axis=(0, 1))
+    behind = pulls[:, 1:].sum(axis=(0, 1))
     course: FloatArray = tow.block_velocities.mean(axis=0)
-    return float(-pull @ course / np.linalg.norm(course))
+    return float(-behind @ course / np.linalg.norm(course))
 
 
 def mouth_area(model: GearModel, state: State) -> float:

@@ -1,19 +1,29 @@
 """Tables of published hauls beside the model."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from trawl_ros.lab.report.page import TextTable
 from trawl_ros.lab.validation.sea.changes import CHANGES, changed_hauls, value_of
-from trawl_ros.lab.validation.sea.modelled import ModelledHaul, gear_record, right_sign
+from trawl_ros.lab.validation.sea.modelled import (
+    Modelled,
+    ModelledHaul,
+    gear_record,
+    is_right,
+    modelled_trend,
+)
 from trawl_ros.lab.validation.sea.published import GearHauls, PublishedHauls, TrendRecord
 from trawl_ros.report.rendering import number
 
 NEAR_PERCENT = 30.0
 """Error that most points are to stay within, %."""
 
-FORCES = ('warp_tension', 'net_drag')
+FORCES = ('warp_tension', 'net_drag', 'lower_bridle_tension')
 """Quantities in newtons."""
+
+
+UNITS = {'warp_m': 'm of warp', 'speed_kn': 'knot'}
+"""Units of what slopes are by."""
 
 
 def word(quantity: str) -> str:
@@ -32,7 +42,9 @@ def shown(value: float, quantity: str) -> str:
         return '–'
     if quantity in FORCES:
         return f'{number(value / 1e3)} kN'
-    return f'{value:.0f} m²' if quantity == 'mouth_area' else f'{value:.1f} m'
+    if quantity == 'mouth_area':
+        return f'{value:.0f} m²'
+    return f'{value:.1f}°' if quantity == 'board_attack' else f'{value:.1f} m'
 
 
 def points_table(hauls: Sequence[ModelledHaul], published: PublishedHauls) -> TextTable:
@@ -61,29 +73,68 @@ def points_table(hauls: Sequence[ModelledHaul], published: PublishedHauls) -> Te
     return TextTable(f'Every published point beside the model. {sources}', head, tuple(rows))
 
 
-def trends_table(
-    trends: Sequence[TrendRecord],
-    hauls: Mapping[tuple[str, str], ModelledHaul],
-    published: PublishedHauls,
-) -> TextTable:
-    """Every trend beside the model."""
+def trends_table(trends: Sequence[TrendRecord], hauls: Modelled) -> TextTable:
+    """Signs and bounds of trends beside the model."""
     rows = tuple(
         (
             trend.gear,
             word(trend.quantity),
             trend.by,
             f'{trend.first} to {trend.second}',
-            'grows' if trend.sign > 0 else 'falls',
+            _printed(trend),
             *(
                 shown(hauls[trend.gear, name].value(trend.quantity), trend.quantity)
                 for name in (trend.first, trend.second)
             ),
-            'yes' if right_sign(trend, hauls) else 'no',
+            'yes' if is_right(trend, hauls) else 'no',
+            trend.source,
         )
         for trend in trends
+        if trend.counts
     )
-    head = ('gear', 'what', 'by', 'hauls', 'sea', 'model, first', 'model, second', 'right')
-    return TextTable('Signs of trends that sources print.', head, rows)
+    head = (
+        'gear',
+        'what',
+        'by',
+        'hauls',
+        'sea',
+        'model, first',
+        'model, second',
+        'right',
+        'source',
+    )
+    return TextTable('Signs of trends, and bounds on them, that sources print.', head, rows)
+
+
+def _printed(trend: TrendRecord) -> str:
+    """Sign or bound as a source prints it."""
+    if trend.within is not None:
+        return f'stays within {shown(trend.within, trend.quantity)}'
+    assert trend.sign is not None
+    return 'grows' if trend.sign > 0 else 'falls'
+
+
+def ratios_table(trends: Sequence[TrendRecord], hauls: Modelled) -> TextTable:
+    """Compare ratios and slopes with the model; ratios as changes in percent."""
+    rows = []
+    for trend in trends:
+        if trend.counts:
+            continue
+        model = modelled_trend(trend, hauls)
+        if trend.per is not None:
+            sea, found = (f'{slope:.3f} per {UNITS[trend.per]}' for slope in (trend.slope, model))
+        else:
+            assert trend.ratio is not None
+            sea, found = (f'{100.0 * (ratio - 1.0):+.1f} %' for ratio in (trend.ratio, model))
+        where = f'{trend.first} to {trend.second}'
+        found = found if math.isfinite(model) else 'no steady state'
+        rows.append((trend.gear, word(trend.quantity), trend.by, where, sea, found, trend.source))
+    return TextTable(
+        'Ratios, as changes in percent, and slopes that sources print. They belong to other gears '
+        'than those they are compared with, so they do not count.',
+        ('gear', 'what', 'by', 'hauls', 'sea', 'model', 'source'),
+        tuple(rows),
+    )
 
 
 def changes_table(hauls: Sequence[ModelledHaul], *, small: bool) -> TextTable:

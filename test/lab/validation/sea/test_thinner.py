@@ -1,0 +1,40 @@
+"""Nets with less twine behind."""
+
+import pytest
+
+from trawl_ros.core.errors import TrawlError
+from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.lab.validation.sea.published import HaulRecord
+from trawl_ros.lab.validation.sea.thinner import ThinnerRecord
+
+
+def rigged(gear: GearRecord, change: ThinnerRecord) -> GearRecord:
+    haul = HaulRecord(name='h', use='counts', warp_m=300, speed_kn=2, thinner=change, points=())
+    return haul.rigged(gear)
+
+
+@pytest.mark.parametrize('off', [0.11, 0.193])
+def test_the_net_has_so_much_less_twine_and_all_of_it_from_small_meshes(off: float) -> None:
+    gear = load_gear('krill_1420')
+    new = rigged(gear, ThinnerRecord(mesh_up_to_mm=31, area_off=off)).netting.plan
+    old = gear.netting.plan
+    assert old is not None
+    assert new is not None
+    areas = [sum(piece.twine_area for piece in plan.pieces) for plan in (old, new)]
+    assert areas[1] / areas[0] == pytest.approx(1.0 - off)
+    for before, after in zip(old.pieces, new.pieces, strict=True):
+        assert (before == after) == (before.mesh_mm > 31)
+        assert before.twine_length == after.twine_length
+
+
+def test_more_twine_than_there_is_cannot_be_taken_off() -> None:
+    with pytest.raises(
+        TrawlError, match=r'haul h of krill_1420: thinner.*expected less than 0\.185'
+    ):
+        rigged(load_gear('krill_1420'), ThinnerRecord(mesh_up_to_mm=9, area_off=0.5))
+
+
+def test_a_net_without_a_plan_is_named() -> None:
+    with pytest.raises(TrawlError, match='haul h of kaifuha: thinner: found a net without a plan'):
+        rigged(load_gear('kaifuha'), ThinnerRecord(mesh_up_to_mm=9, area_off=0.1))
