@@ -15,6 +15,7 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.validation.sea.quantities import net_drag
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import steady_state
+from trawl_ros.solver.trimming.held_boards import rope_pulls
 
 CIRCUMFERENCE = 8.0
 
@@ -91,7 +92,10 @@ def test_a_catch_adds_its_drag_less_that_of_the_netting_that_it_fills(gear: Gear
     full = build_model(with_catch(gear, mass_kg=20000.0, density_kg_m3=1025.0))
     light, heavy = (steady_state(model, 250.0, 1.08) for model in (empty, full))
     drags = [
-        net_drag(model, steady.equilibrium.state, steady.equilibrium.tow)
+        net_drag(
+            rope_pulls(model, steady.equilibrium.state, steady.equilibrium.tow),
+            steady.equilibrium.tow,
+        )
         for model, steady in ((empty, light), (full, heavy))
     ]
     area = (full.lump_drag_area - empty.lump_drag_area).sum()
