@@ -355,6 +355,7 @@ def test_a_cutting_rate_stands_for_a_missing_count(tmp_path: Path) -> None:
         ),
         (lambda p: p[-1].update(front_meshes=0), 'has 0 front_meshes in all its panels'),
         (lambda p: p[0].update(material='cotton'), "found 'cotton', expected 'PA'"),
+        (lambda p: p[0].update(mesh_mm=1.0), 'mesh_mm: found 1.0'),
         (
             lambda p: p[0].update(orientation='ropes'),
             'orientation: found ropes in a wing, 16 at its front',

@@ -61,7 +61,7 @@ class PieceRecord(Record):
     part: Part
     panel: Panel
     section: str = ''
-    mesh_mm: Annotated[float, Field(gt=0, le=200_000)]
+    mesh_mm: Annotated[float, Field(ge=2, le=200_000)]
     front_meshes: Meshes
     back_meshes: Meshes
     long_meshes: Annotated[float, Field(gt=0, le=100_000)]

@@ -7,6 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from trawl_ros.core.errors import GearError
+from trawl_ros.core.schema import validated
 from trawl_ros.gear.net_plan import NetPlanRecord, Panel, Part, PieceRecord
 from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.model.net.planned_mouth import PlannedMouth
@@ -45,24 +47,26 @@ def section_of(
 ) -> SectionRecord:
     """A piece as a section all around of this length (m) and these circumferences (m)."""
     twine = piece.twine
-    return SectionRecord(
-        name=piece.section or piece.part,
-        length_m=length,
-        front_circumference_m=front,
-        back_circumference_m=max(back, 1e-6),
-        mesh_m=piece.mesh,
-        twine_diameter_m=twine.diameter,
-        twine_density_kg_m3=twine.density(SEA),
-        twine_modulus_pa=twine.fibre.modulus,
-        twines=piece.twines,
-        knotless=piece.knots == 'knotless' or piece.orientation == 'ropes',
-        shielding=None if net.plan is None or net.plan.shielded else 1.0,
-        mesh_angle_deg=(
-            float(np.degrees(mesh_angle(piece, net))) if piece.orientation == 'T90' else None
-        ),
-        square=piece.orientation == 'square',
-        ropes=piece.orientation == 'ropes',
-    )
+    name = piece.section or piece.part
+    angle = float(np.degrees(mesh_angle(piece, net))) if piece.orientation == 'T90' else None
+    # The plan bounds its own numbers; what follows from them is bounded as any section is.
+    derived = {
+        'name': name,
+        'length_m': length,
+        'front_circumference_m': front,
+        'back_circumference_m': max(back, 1e-6),
+        'mesh_m': piece.mesh,
+        'twine_diameter_m': twine.diameter,
+        'twine_density_kg_m3': twine.density(SEA),
+        'twine_modulus_pa': twine.fibre.modulus,
+        'twines': piece.twines,
+        'knotless': piece.knots == 'knotless' or piece.orientation == 'ropes',
+        'shielding': None if net.plan is None or net.plan.shielded else 1.0,
+        'mesh_angle_deg': angle,
+        'square': piece.orientation == 'square',
+        'ropes': piece.orientation == 'ropes',
+    }
+    return validated(SectionRecord, derived, f'netting.plan: {name}', GearError)
 
 
 def sections_of(net: NettingRecord, plan: NetPlanRecord, part: Part, panel: str) -> Profile:
