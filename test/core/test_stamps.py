@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.stamps import (
-    DAY,
+    DAY_NS,
     EXCURSION,
     FUTURE,
     LOG_APART_NS,
@@ -18,7 +18,7 @@ TOW = 1_785_000_000 * SECOND + np.arange(600) * SECOND
 """Ten minutes of July 2026."""
 
 OF_2005 = 1_115_251_200 * SECOND
-ROLLOVER = 1024 * 7 * DAY
+ROLLOVER = 1024 * 7 * DAY_NS
 
 
 def test_three_stamps_far_from_the_last_are_believed_and_fewer_are_not():
@@ -38,7 +38,7 @@ def test_what_can_be_has_no_objection(stamp):
 
 
 @pytest.mark.parametrize(
-    'stamp', [-1, 315_964_800 * SECOND, int(TOW[-1]) + 100 * 365 * DAY, 2**63 - 1]
+    'stamp', [-1, 315_964_800 * SECOND, int(TOW[-1]) + 100 * 365 * DAY_NS, 2**63 - 1]
 )
 def test_what_cannot_be_has_one(stamp):
     assert impossible_time(stamp)
@@ -77,18 +77,18 @@ def test_of_a_driver_that_never_stamps_nothing_is_left():
 
 
 def test_where_all_is_in_the_future_this_machine_may_be_wrong():
-    judged = judge_stamps(TOW + 20 * 365 * DAY)
+    judged = judge_stamps(TOW + 20 * 365 * DAY_NS)
     assert not judged.false.any()
     assert judged.reasons == {FUTURE: 600}
 
 
 def test_two_seasons_are_one_log_and_no_one_recording():
-    stamps = np.concatenate([TOW - 200 * DAY, TOW, TOW])
-    assert judge_stamps(stamps, apart_ns=LOG_APART_NS).span == (TOW[0] - 200 * DAY, TOW[-1])
+    stamps = np.concatenate([TOW - 200 * DAY_NS, TOW, TOW])
+    assert judge_stamps(stamps, apart_ns=LOG_APART_NS).span == (TOW[0] - 200 * DAY_NS, TOW[-1])
     assert judge_stamps(stamps).span == (TOW[0], TOW[-1])
 
 
-@pytest.mark.parametrize('leap', [-DAY, -3600 * SECOND, DAY])
+@pytest.mark.parametrize('leap', [-DAY_NS, -3600 * SECOND, DAY_NS])
 def test_a_date_that_changes_late_is_an_excursion(leap):
     stamps = TOW.copy()
     stamps[300:303] += leap
@@ -106,5 +106,5 @@ def test_rows_in_no_order_are_no_excursions(order):
 
 def test_a_pause_is_no_excursion():
     stamps = TOW.copy()
-    stamps[300:] += DAY
+    stamps[300:] += DAY_NS
     assert not judge_stamps(stamps, in_order=True).false.any()

@@ -1,4 +1,4 @@
-"""Two sources on one topic, told by their channels, their stamps, or readings that alternate;
+"""Two sources on one topic: their channels or stamps differ, or their readings alternate;
 and clocks that look like two sources, as they stand still or were set back.
 
 A publisher leaves no name in a bag. That there are two is known from what one cannot do: come by
@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, StampArray
-from trawl_ros.core.stamps import CONFIRM, lasting, when
+from trawl_ros.core.stamps import CONFIRMING_READINGS, lasting, when
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import (
     AttitudeSample,
@@ -68,10 +68,10 @@ two."""
 BACK_NS = 10 * SECOND
 """Stamps that go back by more than this (ns) are those of a clock that was set back."""
 
-RECENT = 2 * CONFIRM - 1
+RECENT_READINGS = 2 * CONFIRMING_READINGS - 1
 """Readings of which the middle one has a stamp that can be believed."""
 
-SETTLED = 10
+SETTLED_READINGS = 10
 """Readings behind a step back from which on the clock was set, and none is stamped falsely."""
 
 
@@ -128,7 +128,7 @@ class SourceWatch:
         before = self._stamps[-1]
         if stamp < before - BACK_NS:
             # After a false stamp far ahead, readings go on from those before it.
-            recent = sorted(self._stamps[-RECENT:])
+            recent = sorted(self._stamps[-RECENT_READINGS:])
             if stamp < recent[len(recent) // 2] - BACK_NS:
                 self._step = self._count, before, stamp
         elif self._step and stamp > self._step[1]:
@@ -148,13 +148,16 @@ class SourceWatch:
         return Doubt('source', f'has two sources{also}, for {why}; expected one instrument')
 
     def _set_back(self) -> Doubt | None:
-        if self._step is not None and self._count - self._step[0] >= SETTLED:
+        if self._step is not None and self._count - self._step[0] >= SETTLED_READINGS:
             _, before, after = self._step
             return _clock_set_back(f'at {when(before)}, by {lasting(before - after)}')
         # Sorted by their stamps, readings of before and after stand between each other.
         order = np.diff(np.array(self._sequences[-BLOCK:]))
         ahead = order[order > BLOCK // 2]
-        if len(ahead) < SETTLED or np.count_nonzero(order < -(BLOCK // 2)) < SETTLED:
+        if (
+            len(ahead) < SETTLED_READINGS
+            or np.count_nonzero(order < -(BLOCK // 2)) < SETTLED_READINGS
+        ):
             return None
         return _clock_set_back(
             f'after {when(self._stamps[-1])} or so: readings that came '

@@ -21,27 +21,27 @@ from trawl_ros.core.time import SECOND
 
 MessageT = TypeVar('MessageT')
 
-DAY = 86_400 * SECOND
+DAY_NS = 86_400 * SECOND
 
-SIMULATED_UNTIL = 365 * DAY
+SIMULATED_UNTIL = 365 * DAY_NS
 """Stamps (ns) below this may be of a simulation, which counts from zero."""
 
-EARLIEST = 631_152_000 * SECOND
+EARLIEST_NS = 631_152_000 * SECOND
 """1990-01-01 (ns): no log of sentences or bag is older."""
 
-MARGIN_NS = DAY
+MARGIN_NS = DAY_NS
 """A stamp may be ahead of this machine's clock by this much: clocks and time zones differ."""
 
-BAG_APART_NS = 30 * DAY
+BAG_APART_NS = 30 * DAY_NS
 """Longest pause (ns) in one recording."""
 
-LOG_APART_NS = 730 * DAY
+LOG_APART_NS = 730 * DAY_NS
 """Longest pause (ns) in one log: a log book may hold two seasons."""
 
 FAR_NS = 60 * SECOND
 """Stamps further than this from the last on their topic may be false; a slow topic's are not."""
 
-CONFIRM = 3
+CONFIRMING_READINGS = 3
 """Stamps in a row that make a leap credible."""
 
 UNSTAMPED = '0, as of a driver that never stamps'
@@ -85,9 +85,9 @@ def impossible_time(stamp: int, now: int | None = None) -> str | None:
     """
     if stamp < 0:
         return 'before 1970'
-    if SIMULATED_UNTIL <= stamp < EARLIEST:
+    if SIMULATED_UNTIL <= stamp < EARLIEST_NS:
         return 'before 1990'
-    if stamp >= EARLIEST and stamp > (time_ns() if now is None else now) + MARGIN_NS:
+    if stamp >= EARLIEST_NS and stamp > (time_ns() if now is None else now) + MARGIN_NS:
         return FUTURE
     return None
 
@@ -234,7 +234,7 @@ class Leaps(Generic[MessageT]):
         agreeing = [waiting for waiting in held if abs(stamp - waiting[0]) <= self._far]
         false = [waiting[1] for waiting in held if abs(stamp - waiting[0]) > self._far]
         self._held = [*agreeing, (stamp, message)]
-        if len(self._held) < CONFIRM:
+        if len(self._held) < CONFIRMING_READINGS:
             return [], false
         self._newest = stamp
         messages, self._held = [message for _, message in self._held], []

@@ -24,7 +24,7 @@ LONGEST_LINE = 20_000
 
 BEGINNING = b'{"time": "'
 KEYS = frozenset({'time', 'event', 'stamp_ns', 'who'})
-"""Beginning and keys of a line, by which a log book is told from a foreign file."""
+"""Beginning and keys of a line: they tell a log book and a foreign file apart."""
 
 
 class LogBook:

@@ -4,7 +4,7 @@ The verdict on a reading depends on the readings of its own channel alone, so it
 however channels interleave.
 """
 
-from trawl_ros.core.stamps import CONFIRM
+from trawl_ros.core.stamps import CONFIRMING_READINGS
 from trawl_ros.estimation.windows.records import Rejections, WindowOptions
 from trawl_ros.estimation.windows.watermark import NANO, Watermark
 from trawl_ros.records.channels import CHANNELS, INPUTS, Channel, Reading
@@ -22,7 +22,7 @@ class TimestampCheck:
     """Timestamp check of one channel.
 
     A reading that leaps ahead of the last by more than the channel's longest gap waits until
-    `CONFIRM` readings agree on the new time: one false stamp must neither close windows early
+    three readings agree on the new time: one false stamp must neither close windows early
     nor make all that follows look late. After a silence, or a start later than the others',
     readings are refused for half of ``patience_s``: windows may have been decided without the
     channel meanwhile, up to which one depends on how topics interleave, and the estimate must
@@ -100,7 +100,7 @@ class TimestampCheck:
             if not newest - self._reorder <= reading.stamp <= newest + self._step:
                 self.give_up()
         self._waiting.append(reading)
-        if len(self._waiting) < CONFIRM:
+        if len(self._waiting) < CONFIRMING_READINGS:
             return []
         waited, self._waiting = self._waiting, []
         return self._accept(sorted(waited, key=lambda waiting: waiting.stamp))

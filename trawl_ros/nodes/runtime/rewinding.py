@@ -1,6 +1,6 @@
 """Detection of a rewound stream, told from single false stamps."""
 
-from trawl_ros.core.stamps import CONFIRM
+from trawl_ros.core.stamps import CONFIRMING_READINGS
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import Sample, WinchSample
 
@@ -15,7 +15,7 @@ class Rewinding:
     """Detector of a rewound stream, such as a bag that loops, told from single false stamps.
 
     The winch tells the time, for without it there are no windows. What goes back is held until
-    `CONFIRM` of its readings in a row do, or one does not: forgetting all for one false stamp
+    three of its readings in a row do, or one does not: forgetting all for one false stamp
     would be worse than to refuse the reading, and what the new round begins with is not to be
     lost. A sensor whose own clock is set back is no new round.
 
@@ -63,7 +63,7 @@ class Rewinding:
         """True if enough readings of the winch have leapt to about here."""
         self._leaps = [leap for leap in self._leaps if abs(stamp - leap) <= BACK_NS]
         self._leaps.append(stamp)
-        return len(self._leaps) >= CONFIRM
+        return len(self._leaps) >= CONFIRMING_READINGS
 
 
 class Reached:
@@ -77,6 +77,6 @@ class Reached:
         """Register the next stamp, and return the newest."""
         leaps = self.stamp > 0 and stamp > self.stamp + BACK_NS
         self._ahead = self._ahead + 1 if leaps else 0
-        if not leaps or self._ahead >= CONFIRM:
+        if not leaps or self._ahead >= CONFIRMING_READINGS:
             self.stamp = max(stamp, self.stamp)
         return self.stamp
