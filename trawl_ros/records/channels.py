@@ -154,9 +154,9 @@ _TABLE = (
             0.2, 10.0, required=False, lively=True,
         )
     ),
-    # Stamped when a sweep of 10 s begins, sent when it ends, and 10 s pass until the next.
+    # Stamped when a sweep of 16 s begins, sent when it ends, and 16 s pass until the next.
     Channel(
-        'vertical_opening', 'sonar/opening_height', 'm', 0.5, 300.0, 2.0, 1.0, 0.03, 0.02, 24.0,
+        'vertical_opening', 'sonar/opening_height', 'm', 0.5, 300.0, 2.0, 1.0, 0.03, 0.02, 36.0,
         required=False,
     ),
     # Heading and rate of turn only tell turning from straight towing.
