@@ -1,6 +1,5 @@
 """Fastening points moved forward: boards lean over less with the speed, until branches fold."""
 
-from collections.abc import Iterator
 
 import numpy as np
 
