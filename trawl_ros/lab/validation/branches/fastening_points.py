@@ -1,6 +1,5 @@
 """Fastening points moved forward: boards lean over less with the speed, until branches fold."""
 
-
 import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
