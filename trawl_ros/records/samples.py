@@ -66,6 +66,23 @@ class AttitudeSample:
 
 
 @dataclass(frozen=True)
+class WarpAngleSample:
+    """Angles of a warp at its towing block: divergence (outward positive, against the ship's
+    course) and declination (down positive), rad.
+    """
+
+    stamp: int
+    side: str
+    divergence: float
+    declination: float
+
+    @property
+    def topic(self) -> str:
+        """Relative name of its topic."""
+        return f'winch/{self.side}/warp_angles'
+
+
+@dataclass(frozen=True)
 class RangeSample:
     """Range sample, m.
 
@@ -177,6 +194,7 @@ NumberSample = (
     WinchSample
     | PressureSample
     | AttitudeSample
+    | WarpAngleSample
     | RangeSample
     | VelocitySample
     | HeadingSample
@@ -280,6 +298,28 @@ def _attitude(side: str) -> Sensor[AttitudeSample]:
         ('door_sensor_node', 'nmea_in'), _READERS,
         blank=AttitudeSample(0, side, _NONE, _NONE, _NONE),
         fields=(angle('pitch', 90.0), angle('roll', 180.0)),
+    )  # fmt: skip
+
+
+def _warp_angles(side: str) -> Sensor[WarpAngleSample]:
+    name = f'winch/{side}/warp_angles'
+
+    def angle(what: str, axis: str) -> Field:
+        channel = Channel(
+            f'{side}_{what}', name, 'rad', -1.6, 1.6, 0.5 * _DEGREE, 0.5 * _DEGREE, 0.0,
+            0.5, 6.0, required=False, lively=True,
+        )  # fmt: skip
+        return Field(
+            what, what, quantity='angle', at=axis, low=-90.0, high=90.0, unit='degrees',
+            scale=_DEGREE, channel=channel, on_course=True,
+        )  # fmt: skip
+
+    return Sensor(
+        name, 'geometry_msgs/msg/Vector3Stamped', VESSEL, 1.0,
+        f'Angles of the {side} warp at its block: x = divergence (outward), '
+        'y = declination (down), rad.',
+        ('winch_node',), (*_IDENTIFIERS, 'view_node'), blank=WarpAngleSample(0, side, _NONE, _NONE),
+        fields=(angle('divergence', 'x'), angle('declination', 'y')), errors='warp_angles',
     )  # fmt: skip
 
 
@@ -387,6 +427,7 @@ INSTRUMENTS: tuple[Sensor[Sample], ...] = (
         'The echoes of a sweep in map, for display.',
         ('trawl_sonar_node',), ('view_node',), blank=SonarPointsSample(0, np.zeros((0, 4))),
     ),
+    *(_warp_angles(side) for side in SIDES),
     _range(
         'bottom', SONAR, 1.0, "From the headrope's centre down to the seabed, m.",
         ('trawl_sonar_node', 'nmea_in'), ('nmea_out', 'view_node', 'trial_node'), 0.26,
