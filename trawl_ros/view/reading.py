@@ -31,6 +31,7 @@ from trawl_ros.records.samples import (
     SonarPointsSample,
     SonarScanSample,
 )
+from trawl_ros.records.topics import CONTRACT
 from trawl_ros.records.truth import SIDES
 from trawl_ros.view.gear_source import GearFollower
 from trawl_ros.view.model_source import ModelFollower
@@ -55,21 +56,7 @@ IDENTIFICATION, FINDINGS, TRIAL = (
 )
 WINCH_COMMAND, VESSEL_COMMAND = 'command/winch', 'command/vessel'
 
-TOPICS = (
-    *TRUTH,
-    GEAR,
-    MOUTH,
-    SECTION,
-    SCHOOLS,
-    SEABED,
-    *SAMPLE_TOPICS,
-    IDENTIFICATION,
-    INNOVATION,
-    FINDINGS,
-    TRIAL,
-    WINCH_COMMAND,
-    VESSEL_COMMAND,
-)
+TOPICS = tuple(row.name for row in CONTRACT if 'view_node' in row.heard_by)
 """Relative names of the topics that are shown."""
 
 LAGGING = (IDENTIFICATION, INNOVATION, FINDINGS, TRIAL)
