@@ -9,7 +9,7 @@ from scipy.special import chdtri
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
-from trawl_ros.estimation.fit.error_terms import GROUPS, group_of
+from trawl_ros.estimation.fit.error_terms import group_of
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit import fit_motion
@@ -59,8 +59,19 @@ at a lower one boards lose their lift meanwhile, and bars go slack."""
 
 START = np.array([520.0, 520.0, 2.3])
 
-NOISE = dict(zip(GROUPS, (500.0, 0.1, 0.4, 0.1, 0.003, 0.003, 0.3), strict=True))
+NOISE = {
+    'tension': 500.0,
+    'door_depth': 0.1,
+    'door_spread': 0.4,
+    'net_depth': 0.1,
+    'pitch': 0.003,
+    'roll': 0.003,
+    'vertical_opening': 0.3,
+}
 """Standard deviations (SI) of the means of a stretch of 20 s, about those of the instruments."""
+
+CHANNELS = tuple(name for name in MEASURED if group_of(name) in NOISE)
+"""Channels of the tows."""
 
 STEP_S, STRETCH_S, DURATION_S = 2.0, 20.0, 420.0
 
@@ -106,13 +117,13 @@ def course_tow(duration_s: float = DURATION_S) -> MovingTow:
         change = np.array([warp, warp, speed])
         values += change * part**2 * (3.0 - 2.0 * part)
         rates += change * 6.0 * part * (1.0 - part) / (end - begin)
-    n, k, steps = int(duration_s / STRETCH_S), len(MEASURED), round(STRETCH_S / STEP_S)
+    n, k, steps = int(duration_s / STRETCH_S), len(CHANNELS), round(STRETCH_S / STEP_S)
     weights = np.full((n, k, steps + 1), 1.0 / steps)
     weights[..., [0, -1]] *= 0.5
-    noise = np.tile([NOISE[group_of(name)] for name in MEASURED], (n, 1))
+    noise = np.tile([NOISE[group_of(name)] for name in CHANNELS], (n, 1))
     still = np.zeros(len(grid))
     return MovingTow(
-        'course', 0, STEP_S, STRETCH_S, MEASURED, np.zeros((n, k)), noise,
+        'course', 0, STEP_S, STRETCH_S, CHANNELS, np.zeros((n, k)), noise,
         np.ones((n, k), dtype=int), weights, TowInputs(1.0, values, rates, still, still),
     )  # fmt: skip
 
