@@ -29,7 +29,7 @@ from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.stepper import StepFailed
 
 COURSE, AUTOTRAWLED_COURSE = 'demo', 'states_by_autotrawl'
-"""Scenarios that are towed: five states in 52 minutes."""
+"""Scenarios that are towed: five states in 59 minutes."""
 
 HELD_OUT: tuple[State, ...] = ((380.0, 2.25), (330.0, 2.15), (280.0, 2.0), (225.0, 1.9))
 """Steady states that are predicted and not towed, between those of the course."""
