@@ -15,8 +15,7 @@ from trawl_ros.messages.commands import winch_command
 from trawl_ros.messages.stamps import header
 from trawl_ros.messages.truth_to_messages import clock_message
 from trawl_ros.nodes.graph.source import Source
-from trawl_ros.nodes.runtime.incoming import Incoming, believing_clock, decoding
-from trawl_ros.nodes.runtime.turns import Turns
+from trawl_ros.nodes.runtime.incoming import Incoming, Turns, believing_clock, decoding
 
 JOINTS = 'sensor_msgs/msg/JointState'
 WINCH = 'winch/joint_states'

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.network import THIS_MACHINE, is_this_machine
 from trawl_ros.messages.diagnostics import OK, Status
-from trawl_ros.nodes.runtime.incoming import size_limit
-from trawl_ros.nodes.runtime.message_classes import installed
+from trawl_ros.nodes.runtime.incoming import installed, size_limit
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import LATCHED, STREAM

@@ -7,7 +7,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.nodes.playback.topic_choice import TopicChoice
+from trawl_ros.nodes.playback.recorded_qos import TopicChoice
 
 
 def chosen(pattern, parameter='regex'):

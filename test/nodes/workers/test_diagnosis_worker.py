@@ -6,7 +6,7 @@ from threading import Event
 import pytest
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.nodes.workers.diagnosis_worker import DiagnosisOutcome, WatchingThread
+from trawl_ros.nodes.workers.diagnosis_worker import DiagnosisOutcome, DiagnosisWorker
 
 
 class Slow:
@@ -30,7 +30,7 @@ class Slow:
 @pytest.fixture
 def watched():
     slow, told = Slow(), []
-    thread = WatchingThread(slow, told.append)
+    thread = DiagnosisWorker(slow, told.append)
     thread.start()
     yield thread, slow, told
     slow.may.set()

@@ -35,8 +35,8 @@ CLOSE_S = 1.0
 
 
 @dataclass(frozen=True)
-class Wish:
-    """Wish of a viewer: a topic, and whether it is wanted from now on or no longer."""
+class SubscriptionRequest:
+    """Request of a viewer to begin a subscription to a topic, or with ``wanted`` False to end it."""
 
     viewer: int
     topic: str
@@ -117,7 +117,7 @@ class ViewerServer:
         self._lock = Lock()
         self._channels: list[dict[str, object]] = []
         self._open: list[_Viewer] = []
-        self._wishes: list[Wish] = []
+        self._wishes: list[SubscriptionRequest] = []
         self._wanting: dict[str, set[int]] = defaultdict(set)
         self._made = 0
         try:
@@ -156,7 +156,7 @@ class ViewerServer:
         """Topics that anybody wants."""
         return {topic for topic, viewers in self._wanting.items() if viewers}
 
-    def new_wishes(self) -> list[Wish]:
+    def new_wishes(self) -> list[SubscriptionRequest]:
         """Take the wishes since the last call into account, and give them."""
         with self._lock:
             wishes, self._wishes = self._wishes, []
@@ -257,7 +257,7 @@ class ViewerServer:
             with self._lock:
                 self._open.remove(viewer)
                 for topic in set(viewer.topics.values()):
-                    self._wishes.append(Wish(viewer.number, topic, False))
+                    self._wishes.append(SubscriptionRequest(viewer.number, topic, False))
 
     def _greetings(self) -> list[dict[str, object]]:
         capabilities = ['time'] if self._tells_time else []
@@ -288,5 +288,5 @@ class ViewerServer:
                 if isinstance(number, int):
                     viewer.topics.pop(number, None)
             after = set(viewer.topics.values())
-            self._wishes += [Wish(viewer.number, topic, True) for topic in after - before]
-            self._wishes += [Wish(viewer.number, topic, False) for topic in before - after]
+            self._wishes += [SubscriptionRequest(viewer.number, topic, True) for topic in after - before]
+            self._wishes += [SubscriptionRequest(viewer.number, topic, False) for topic in before - after]
