@@ -92,7 +92,7 @@ class FoxgloveNode(TrawlNode):
 
     def _look(self) -> None:
         """Listen to what viewers want, and to nothing else."""
-        newly = {wish.topic for wish in self._server.new_wishes() if wish.wanted}
+        newly = {wish.topic for wish in self._server.new_requests() if wish.wanted}
         wanted = self._server.wanted
         for name in self._heard - wanted:
             self._leave(name)

@@ -1,4 +1,4 @@
-"""Flow control: consumers report their progress, and sources wait for the slowest or for a clock.
+"""Flow control: consumers report their progress, and sources wait for the slowest.
 
 An acknowledged message is not a processed one: DDS says that the bytes have arrived, not that
 the subscriber has come to them. A source that runs as fast as it can would fill queues until
