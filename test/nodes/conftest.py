@@ -173,7 +173,7 @@ def estimate_listener():
     """Give the class of a node that looks at what the identification says."""
     from trawl_ros.messages.diagnostics import read_statuses
     from trawl_ros.messages.estimates import read_covariance, read_estimate, read_innovations
-    from trawl_ros.nodes.graph.matching_qos import with_history
+    from trawl_ros.nodes.graph.source import with_history
     from trawl_ros.nodes.runtime.node import TrawlNode
     from trawl_ros.nodes.runtime.qos import CONSUMER
 

@@ -148,12 +148,12 @@ def test_a_track_is_read_checked_and_its_end_reported(graph, lookout, pilot, tmp
     node = pilot()
     answer = change(node, mode='track')
     assert not answer.successful
-    assert 'expected the parameter track to be set before' in answer.reason
+    assert 'parameter track' in answer.reason
     bad = tmp_path / 'bad.yaml'
     bad.write_text('course_deg: 3\n')
     answer = change(node, track=str(bad))
     assert not answer.successful
-    assert 'expected track_m or track_deg' in answer.reason
+    assert 'track_m or track_deg' in answer.reason
     good = tmp_path / 'track.yaml'
     good.write_text('track_deg: [[60.0, 2.1]]\n')
     assert change(node, track=str(good)).successful
@@ -164,7 +164,7 @@ def test_a_track_is_read_checked_and_its_end_reported(graph, lookout, pilot, tmp
 
 
 def test_a_track_that_is_missing_at_the_start_is_said(graph):
-    with pytest.raises(ParameterError, match='expected the parameter track to be set before'):
+    with pytest.raises(ParameterError, match='parameter track'):
         graph.add(AutopilotNode, mode='track')
 
 

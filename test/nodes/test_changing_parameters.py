@@ -120,8 +120,9 @@ def test_every_parameter_changes_or_says_why_not(add, kind):
 def test_a_name_that_no_parameter_has_is_told_with_the_nearest(add):
     node = add(SimNode, sped_m_s=2.0, whatever=1)
     first, second = misspelt(node)
-    assert first == 'parameter sped_m_s: this node has none of that name; expected speed_m_s'
-    assert second.startswith('parameter whatever: this node has none of that name; expected one of')
+    assert first.startswith('parameter sped_m_s: ')
+    assert first.endswith('expected speed_m_s')
+    assert second.startswith('parameter whatever: ')
     assert not misspelt(add(SimNode, speed_m_s=2.0, use_sim_time=False))
 
 

@@ -79,7 +79,7 @@ def test_so_does_a_domain_that_is_none(monkeypatch, capfd):
     monkeypatch.setenv('ROS_DOMAIN_ID', 'abc')
     code, errors = told('winch_node', '-p seed:=1', capfd)
     assert (code, len(errors.splitlines())) == (1, 1)
-    assert errors.startswith('winch_node: ROS 2 refuses to start: ')
+    assert errors.startswith('winch_node: ROS 2 ')
 
 
 def test_what_ros_says_of_itself_is_heard_again(capfd):

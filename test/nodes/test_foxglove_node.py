@@ -26,7 +26,7 @@ from trawl_ros.messages.estimates import ESTIMATE, estimate_message  # noqa: E40
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.foxglove_node import FoxgloveNode, main  # noqa: E402
 from trawl_ros.nodes.links import websocket  # noqa: E402
-from trawl_ros.nodes.runtime.message_classes import installed  # noqa: E402
+from trawl_ros.nodes.runtime.incoming import installed  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402
 from trawl_ros.records.samples import RangeSample, WinchSample  # noqa: E402

@@ -15,8 +15,7 @@ from trawl_ros.messages.commands import winch_command
 from trawl_ros.messages.stamps import header
 from trawl_ros.messages.truth_to_messages import clock_message
 from trawl_ros.nodes.graph.source import Source
-from trawl_ros.nodes.runtime.incoming import Incoming, believing_clock, decoding
-from trawl_ros.nodes.runtime.turns import Turns
+from trawl_ros.nodes.runtime.incoming import Incoming, Turns, believing_clock, decoding
 
 JOINTS = 'sensor_msgs/msg/JointState'
 WINCH = 'winch/joint_states'
@@ -43,7 +42,7 @@ def test_an_unforeseen_error_is_refused_with_its_place_in_one_line():
 
     Incoming(WINCH, use, said.append, print, Source(lambda: 1), True, Turns())(b'', numbered(1))
     (sentence,) = said
-    assert sentence.startswith(f'{WINCH}: an error of the program in ')
+    assert sentence.startswith(f'{WINCH}: an error of ')
     assert 'ZeroDivisionError: nothing' in sentence
     assert len(sentence) < 300
     assert '\n' not in sentence
@@ -83,7 +82,7 @@ def test_a_false_clock_is_left_out(second):
     show = believing_clock(lambda message: shown.append(message.clock.sec), refused.append)
     show(clock_message(100 * SECOND)[1])
     if second < 0:
-        with pytest.raises(MessageError, match='/clock: -5 s; expected 0 or later'):
+        with pytest.raises(MessageError, match='/clock: -5 s'):
             show(clock_message(second * SECOND)[1])
     else:
         show(clock_message(second * SECOND)[1])

@@ -1,6 +1,6 @@
 """A node that starts says what it does, on what, and with which topics."""
 
-from trawl_ros.nodes.runtime.introduction import introduction
+from trawl_ros.nodes.runtime.node import introduction
 
 
 class Node:

@@ -3,7 +3,7 @@
 import pytest
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.nodes.playback.log_time import LONGEST_WAIT_NS, LogTimes
+from trawl_ros.nodes.bag_recorder import LONGEST_WAIT_NS, LogTimes
 
 NOW = 1_785_000_000 * SECOND
 LATE = SECOND // 5

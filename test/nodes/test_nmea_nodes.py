@@ -206,7 +206,7 @@ def test_of_two_senders_with_one_name_the_first_is_believed_until_it_is_silent(
     graph.until(lambda: ship.report('sentences').values.get('not understood') == '3')
     (told,) = [key for key in ship.report('sentences').values if 'another source' in key]
     link = f'udp://:{port} from'
-    assert told.startswith(f'not understood: a reading of door/spread by {link} {other}, which')
+    assert told.startswith(f'not understood: a reading of door/spread by {link} {other}')
     assert f'another source tells: {link} {THIS_MACHINE} marport' in told
 
     def believed():
@@ -290,7 +290,7 @@ def test_set_points_are_not_passed_on_unasked(graph, ship, port):
     opened(graph, ship, f'udp://:{port}')
     say(port, 'PTRVS,4.00,N,0.0,D')
     graph.until(lambda: ship.report('sentences').level == WARN)
-    assert 'while parameter commands is false' in ship.report('sentences').message
+    assert 'parameter commands' in ship.report('sentences').message
     assert ship.commands == []
 
 
@@ -327,7 +327,7 @@ def test_set_points_that_leave_something_out_are_refused_and_the_node_goes_on(
     ('kind', 'parameters', 'complaint'),
     [
         (NmeaIn, {'links': ['udp://:0']}, 'found port 0'),
-        (NmeaIn, {'systems': ['marpot']}, 'neither a file nor a name of the package'),
+        (NmeaIn, {'systems': ['marpot']}, 'marpot'),
         (NmeaIn, {'commands': True}, 'no system commands'),
         (NmeaOut, {'systems': ['set_points']}, 'they tell no reading'),
     ],

@@ -93,7 +93,7 @@ def all_heard(graph, crew, simulation):
 def test_paused_nothing_moves_and_resumed_it_goes_on_without_a_gap(graph, crew, simulation):
     answer = graph.call(crew, 'pause')
     assert answer.success
-    assert answer.message.startswith('the tow is paused at ')
+    assert answer.message.startswith('the tow is paused')
     at = all_heard(graph, crew, simulation)
     graph.rest(0.5)
     assert crew.latest == at
@@ -107,7 +107,7 @@ def test_paused_nothing_moves_and_resumed_it_goes_on_without_a_gap(graph, crew, 
 def test_a_step_is_one_truth(graph, crew, simulation):
     refusal = graph.call(crew, 'step')
     assert not refusal.success
-    assert refusal.message == 'the tow is not paused; expected a call of pause before'
+    assert 'not paused' in refusal.message
     graph.call(crew, 'pause')
     at = all_heard(graph, crew, simulation)
     number = len(crew.truth)

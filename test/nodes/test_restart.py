@@ -66,7 +66,7 @@ def test_a_recording_of_the_viewer_keeps_its_suffix(open_graph, tmp_path, capfd)
 
 def test_a_place_that_cannot_be_written_names_the_parameter(open_graph, tmp_path):
     (tmp_path / 'file').write_text('kept')
-    with open_graph() as graph, pytest.raises(TrawlError, match=r'^parameter output: .*cannot be'):
+    with open_graph() as graph, pytest.raises(TrawlError, match=r'^parameter output: '):
         graph.add(DiscrepancyNode, output=str(tmp_path / 'file' / 'report'))
 
 

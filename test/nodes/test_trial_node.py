@@ -185,7 +185,7 @@ def test_without_the_node_that_estimates_it_holds(graph, ship, under_way, sail, 
     monkeypatch.setattr(ship, 'beat', lambda: None)
     graph.rest(2.0)
     sail(0.5)
-    assert ship.status.message == 'holds: identification_node is lost'
+    assert ship.status.message.startswith('holds: identification_node')
     assert stands(ship, sail)
 
 
@@ -197,7 +197,7 @@ def test_the_operator_pauses_vetoes_and_takes_over(graph, ship, under_way, sail)
     assert ship.status.values['mode'] == 'paused'
     assert graph.call(ship, 'trial/resume').success
     answer = graph.call(ship, 'trial/veto')
-    assert answer.message == '400 m at 2.10 m/s is struck off'
+    assert answer.message.startswith('400 m at 2.10 m/s')
     sail(1.0)
     assert ship.status.values['port_warp'] == '350'
     assert graph.call(ship, 'trial/take_over').success
@@ -216,7 +216,8 @@ def test_a_command_of_somebody_else_takes_over(ship, under_way, sail):
     ship.send(*winch_command(ship.now_ns + 1, 310.0, 310.0))
     sail(1.0)
     assert ship.status.values['mode'] == 'taken over'
-    assert ship.status.message == 'taken over: another node publishes command/winch'
+    assert ship.status.message.startswith('taken over: ')
+    assert 'command/winch' in ship.status.message
     heard = len(ship.answers)
     sail(2.0)
     assert len(ship.answers) == heard
@@ -247,7 +248,7 @@ def test_limits_are_changed_while_it_sails_and_nonsense_is_refused(ship, under_w
     (answer,) = node.set_parameters([Parameter('max_tension_kn', value=140.0)])
     assert answer.successful
     sail(2.0)
-    assert 'tension of the port warp above 140 kN' in ship.status.values['held']
+    assert 'above 140 kN' in ship.status.values['held']
     assert stands(ship, sail)
     (answer,) = node.set_parameters([Parameter('hours', value=-1.0)])
     assert not answer.successful

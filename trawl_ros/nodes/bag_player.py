@@ -12,11 +12,9 @@ from trawl_ros.core.stamps import FAR_NS, lasting, when
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.truth_to_messages import clock_message
-from trawl_ros.nodes.playback.excerpt import Excerpt
-from trawl_ros.nodes.playback.replay import replayed
-from trawl_ros.nodes.runtime.credit import STALLED_S, Consumers
+from trawl_ros.nodes.playback.replay import Excerpt, replayed
+from trawl_ros.nodes.runtime.credit import STALLED_S, Consumers, Pacer
 from trawl_ros.nodes.runtime.node import TrawlNode
-from trawl_ros.nodes.runtime.pacer import Pacer
 from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import PUBLISHED_DEPTH
 from trawl_ros.nodes.runtime.run import run
@@ -210,9 +208,7 @@ class BagPlayer(TrawlNode):
         self.say('next message', WARN if far else OK, self._far_off or 'is near')
 
     def _stand_still(self, slowest: int | None) -> bool:
-        """True if consumers have stood still for `QUIET_S`, and none is busy: the rest does not
-        concern them.
-        """
+        """Return True if all consumers are idle and none has progressed for `QUIET_S`."""
         now = monotonic()
         if self._last_progress[0] != slowest or self._consumers.busy():
             self._last_progress = (slowest, now)

@@ -22,18 +22,17 @@ from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Flag, Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
-from trawl_ros.nodes.runtime.reading import OneSourceEach
-from trawl_ros.nodes.runtime.rewinding import Reached, Rewinding
+from trawl_ros.nodes.runtime.reading import OneSourceEach, Reached, Rewinding
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.workers.diagnosis_worker import DiagnosisOutcome, WatchingThread
+from trawl_ros.nodes.workers.diagnosis_worker import DiagnosisOutcome, DiagnosisWorker
 from trawl_ros.nodes.workers.finding_status import (
     CALM,
     finding_statuses,
     onset_status,
     onset_watch_status,
 )
-from trawl_ros.nodes.workers.onset_worker import OnsetThread
-from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_options
+from trawl_ros.nodes.workers.onset_worker import OnsetWorker
+from trawl_ros.nodes.workers.settings import WINDOW_SPECS, window_options
 
 if TYPE_CHECKING:
     from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
@@ -94,14 +93,14 @@ class DiscrepancyNode(TrawlNode):
         self._telling = Lock()
         self._open_book()
         self.advertise(FINDINGS)
-        self._watching = WatchingThread(self._look_at, self._publish)
+        self._watching = DiagnosisWorker(self._look_at, self._publish)
         self._progress = ConsumerProgress(self, idle=self._idle, busy=lambda: not self._idle())
         watched = parameters['watch'] and self._gear.pair is None
         self._monitor = self._new_monitor() if watched else None
         self._onset = (
             None
             if self._monitor is None
-            else OnsetThread(self._monitor, self._tell_finding, self._watched)
+            else OnsetWorker(self._monitor, self._tell_finding, self._watched)
         )
         for topic in READ_TOPICS:
             self.listen(topic, self._feeder(topic), CONSUMER)
@@ -173,7 +172,7 @@ class DiscrepancyNode(TrawlNode):
                 if self._onset is None:
                     self._progress.done(self._reached.stamp)
                 else:
-                    self._onset.feed(one)
+                    self._onset.put(one)
 
         return feed
 

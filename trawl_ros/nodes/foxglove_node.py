@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.network import THIS_MACHINE, is_this_machine
 from trawl_ros.messages.diagnostics import OK, Status
-from trawl_ros.nodes.runtime.incoming import size_limit
-from trawl_ros.nodes.runtime.message_classes import installed
+from trawl_ros.nodes.runtime.incoming import installed, size_limit
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import LATCHED, STREAM
@@ -93,7 +92,7 @@ class FoxgloveNode(TrawlNode):
 
     def _look(self) -> None:
         """Listen to what viewers want, and to nothing else."""
-        newly = {wish.topic for wish in self._server.new_wishes() if wish.wanted}
+        newly = {wish.topic for wish in self._server.new_requests() if wish.wanted}
         wanted = self._server.wanted
         for name in self._heard - wanted:
             self._leave(name)

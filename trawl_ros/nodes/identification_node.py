@@ -38,11 +38,9 @@ from trawl_ros.nodes.runtime.credit import ConsumerProgress
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Flag, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
-from trawl_ros.nodes.runtime.reading import OneSourceEach
-from trawl_ros.nodes.runtime.rewinding import Rewinding
+from trawl_ros.nodes.runtime.reading import OneSourceEach, Rewinding
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.workers.advice_parameters import ADVICE_SPECS, advice_limits
-from trawl_ros.nodes.workers.advice_worker import AdvisingThread
+from trawl_ros.nodes.workers.advice_worker import AdviceWorker
 from trawl_ros.nodes.workers.estimate_status import (
     advice_status,
     identification_statuses,
@@ -54,7 +52,12 @@ from trawl_ros.nodes.workers.identification_worker import IdentificationWorker
 from trawl_ros.nodes.workers.motion_learner import MotionLearner
 from trawl_ros.nodes.workers.outcome import EstimatorOutcome
 from trawl_ros.nodes.workers.proposals import knowledge_status
-from trawl_ros.nodes.workers.window_parameters import WINDOW_SPECS, window_options
+from trawl_ros.nodes.workers.settings import (
+    ADVICE_SPECS,
+    WINDOW_SPECS,
+    advice_limits,
+    window_options,
+)
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.scenario.scenario import true_coefficients
 
@@ -136,12 +139,12 @@ class IdentificationNode(TrawlNode):
         if self._adviser is not None:
             self._adviser.start()
 
-    def _advising(self) -> AdvisingThread:
+    def _advising(self) -> AdviceWorker:
         # A model of its own: the estimator's remembers what it was asked last.
         predictor = predictor_for(self._gear)
         options = window_options(self.parameters)
         adviser = Adviser(self._gear, predictor, advice_limits(self.parameters), options)
-        return AdvisingThread(
+        return AdviceWorker(
             adviser,
             board_prior(self._gear).start,
             self.parameters['advise_share'],
@@ -236,7 +239,7 @@ class IdentificationNode(TrawlNode):
             for one in samples:
                 if one is sample:
                     self._instruments.check(topic, sample)
-                self._worker.feed(one)
+                self._worker.put(one)
 
         return feed
 

@@ -9,20 +9,23 @@ from typing import Any, ClassVar
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.time import SECOND
 from trawl_ros.gear.load import load_gear
-from trawl_ros.messages.commands import VESSEL_COMMAND, WINCH_COMMAND
+from trawl_ros.messages.commands import (
+    VESSEL_COMMAND,
+    WINCH_COMMAND,
+    read_vessel_command,
+    read_winch_command,
+)
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
 from trawl_ros.nodes.command_watch import CommandWatch
-from trawl_ros.nodes.runtime.credit import SILENT_S, STALLED_S, Consumers
-from trawl_ros.nodes.runtime.message_classes import installed
+from trawl_ros.nodes.runtime.credit import SILENT_S, STALLED_S, Consumers, Pacer
+from trawl_ros.nodes.runtime.incoming import installed
 from trawl_ros.nodes.runtime.node import TrawlNode
-from trawl_ros.nodes.runtime.pacer import Pacer
 from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.tow_commands import wanted_lengths, wanted_motion
 from trawl_ros.nodes.towing import (
     DEFAULT_START,
     CommandedTow,
@@ -36,6 +39,35 @@ from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
 from trawl_ros.scenario.run import Trial
 from trawl_ros.scenario.scenario import Scenario, load_scenario
+
+
+def wanted_lengths(message: Any) -> tuple[float | None, float | None]:
+    """Return the warp lengths (m) of a command, None for a winch it does not name.
+
+    Raises
+    ------
+    MessageError
+        If it cannot be read, or asks for what cannot be.
+    """
+    wanted = read_winch_command(message)
+    if objection := LIMITS.objection(wanted):
+        raise MessageError(f'{WINCH_COMMAND}: {objection}')
+    return wanted
+
+
+def wanted_motion(message: Any) -> tuple[float, float]:
+    """Return the speed (m/s) and rate of turn (rad/s, to port) of a command.
+
+    Raises
+    ------
+    MessageError
+        If it cannot be read, or asks for what cannot be.
+    """
+    speed, turn = read_vessel_command(message)
+    if objection := LIMITS.objection((), speed, turn):
+        raise MessageError(f'{VESSEL_COMMAND}: {objection}')
+    return speed, turn
+
 
 GEAR_MARKERS = 'truth/gear'
 WHEN_SILENT = {VESSEL_COMMAND: 'the ship steers straight on', WINCH_COMMAND: 'the winches stop'}

@@ -114,9 +114,8 @@ class CommandedTow:
         self.command_winches(*self.simulation.stop_lengths())
 
     def stop_turning(self) -> None:
-        """Steer straight on at the speed that was commanded last; a ship that stops loses her gear
-        on the seabed.
-        """
+        """Steer straight on at the last commanded speed."""
+        # The speed is kept: a ship that stops drops her gear on the seabed.
         self.simulation.command = replace(self.simulation.command, turn_rate=0.0)
 
     def reset(self) -> None:

@@ -17,7 +17,9 @@ SCHOOLS, SEABED = 'truth/schools', 'truth/seabed'
 
 
 class VesselNode(InstrumentNode):
-    """Reports ``vessel/{velocity_water,velocity_ground,heading,fix}``,
+    """Reports velocity, heading, position, echo sounder and fish sonar of the ship.
+
+    Topics: ``vessel/{velocity_water,velocity_ground,heading,fix}``,
     ``vessel/echo_sounder/{depth,school}`` and ``vessel/fish_sonar``.
     """
 

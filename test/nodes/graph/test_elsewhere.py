@@ -12,7 +12,7 @@ from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.autotrawl_node import AutotrawlNode  # noqa: E402
 from trawl_ros.nodes.bag_recorder import BagRecorder  # noqa: E402
 from trawl_ros.nodes.discrepancy_node import DiscrepancyNode  # noqa: E402
-from trawl_ros.nodes.graph.elsewhere import elsewhere  # noqa: E402
+from trawl_ros.nodes.graph.graph_checks import elsewhere  # noqa: E402
 from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.runtime.qos import CONSUMER  # noqa: E402

@@ -2,7 +2,7 @@
 
 import pytest
 
-from trawl_ros.nodes.runtime.pacer import LARGEST_DELAY_S, Pacer
+from trawl_ros.nodes.runtime.credit import LARGEST_DELAY_S, Pacer
 
 
 class Wall:

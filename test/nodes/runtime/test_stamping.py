@@ -7,9 +7,9 @@ from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import diagnostic_array
 from trawl_ros.messages.estimates import estimate_message
 from trawl_ros.messages.markers import gear_markers
+from trawl_ros.messages.stamps import header_stamp
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.truth_to_messages import clock_message
-from trawl_ros.nodes.runtime.stamping import header_stamp
 from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import FixSample, HeadingSample, RangeSample, WinchSample
 from trawl_ros.records.truth import GearPicture, Polyline

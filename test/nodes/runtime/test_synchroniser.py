@@ -2,7 +2,7 @@
 
 import pytest
 
-from trawl_ros.nodes.runtime.synchroniser import LONGEST_WAIT, Joiner
+from trawl_ros.nodes.instrument_node import LONGEST_WAIT, Joiner
 
 
 @pytest.fixture

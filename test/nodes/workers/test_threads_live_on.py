@@ -9,7 +9,7 @@ import numpy as np
 
 from trawl_ros.estimation.from_gear import identification_for
 from trawl_ros.gear.load import load_gear
-from trawl_ros.nodes.workers.advice_worker import AdvisingThread
+from trawl_ros.nodes.workers.advice_worker import AdviceWorker
 from trawl_ros.nodes.workers.identification_worker import IdentificationWorker
 from trawl_ros.records.samples import WinchSample
 
@@ -37,10 +37,10 @@ def test_a_state_that_cannot_be_saved_is_said_and_the_next_sample_is_used(coarse
     identification = identification_for(load_gear(coarse_gear))
     worker = IdentificationWorker(identification, outcomes.append, dealt.append, broken, str)
     worker.start()
-    worker.feed(WinchSample(1, (500.0, 500.0), (0.0, 0.0), (9e4, 9e4)))
+    worker.put(WinchSample(1, (500.0, 500.0), (0.0, 0.0), (9e4, 9e4)))
     asyncio.run(granted(worker.finish()))
     assert said_whole(outcomes[-1].troubles['saving'])
-    worker.feed(WinchSample(2, (500.0, 500.0), (0.0, 0.0), (9e4, 9e4)))
+    worker.put(WinchSample(2, (500.0, 500.0), (0.0, 0.0), (9e4, 9e4)))
     worker.stop()
     assert dealt == [1, 2]
 
@@ -51,7 +51,7 @@ def test_a_report_that_cannot_be_written_ends_the_wish_and_not_the_thread(coarse
         identification, lambda _: None, lambda _: None, lambda _: None, broken
     )
     worker.start()
-    worker.feed(WinchSample(1, (500.0, 500.0), (0.0, 0.0), (9e4, 9e4)))
+    worker.put(WinchSample(1, (500.0, 500.0), (0.0, 0.0), (9e4, 9e4)))
     ended = asyncio.run(granted(worker.finish()))
     assert ended.failed
     assert said_whole(ended.finished)
@@ -62,7 +62,7 @@ def test_a_report_that_cannot_be_written_ends_the_wish_and_not_the_thread(coarse
 def test_advice_that_fails_is_said_and_sought_again():
     told = SimpleQueue()
     adviser = SimpleNamespace(advise=broken, look_up=broken, trouble='')
-    thread = AdvisingThread(adviser, np.zeros(12), 0.1, lambda: True, lambda *what: told.put(what))
+    thread = AdviceWorker(adviser, np.zeros(12), 0.1, lambda: True, lambda *what: told.put(what))
     thread.start()
     for _ in range(2):
         thread.fitted(SimpleNamespace(windows=(), coefficients=np.zeros(12)))
@@ -76,7 +76,7 @@ def test_a_manoeuvre_that_cannot_be_looked_up_takes_no_advice_away():
     told, advice = SimpleQueue(), object()
     rest = Event()
     adviser = SimpleNamespace(advise=lambda fit: advice, look_up=broken, trouble='none is towed')
-    thread = AdvisingThread(adviser, np.zeros(12), 0.1, rest.is_set, lambda *what: told.put(what))
+    thread = AdviceWorker(adviser, np.zeros(12), 0.1, rest.is_set, lambda *what: told.put(what))
     thread.start()
     thread.fitted(SimpleNamespace(windows=(), coefficients=np.zeros(12)))
     assert told.get(timeout=PATIENCE_S) == (advice, 'none is towed')

@@ -14,9 +14,8 @@ from rosbags.interfaces import Nodetype
 from trawl_ros.messages.cdr import STORE, serialize
 from trawl_ros.messages.stamps import to_time
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
-from trawl_ros.nodes.runtime.credit import Consumers
+from trawl_ros.nodes.runtime.credit import Consumers, Pacer
 from trawl_ros.nodes.runtime.node import TrawlNode
-from trawl_ros.nodes.runtime.pacer import Pacer
 from trawl_ros.nodes.runtime.parameters import Names, Number
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.records.topics import COMMANDS, ESTIMATES, INSTRUMENTS, TRUTH, absolute

@@ -273,9 +273,8 @@ class _Server(Channel):
         return found
 
     def _make_room(self) -> int | None:
-        """Drop a client that is silent, the first that never spoke before any other, if all places
-        are taken.
-        """
+        """Drop the longest silent client if all places are taken."""
+        # A client that never sent anything counts as silent for ever.
         if len(self._clients) < MOST_CLIENTS:
             return None
         self.turned_away += 1

@@ -35,8 +35,8 @@ CLOSE_S = 1.0
 
 
 @dataclass(frozen=True)
-class Wish:
-    """Wish of a viewer: a topic, and whether it is wanted from now on or no longer."""
+class SubscriptionRequest:
+    """Request of a viewer to begin a subscription, or to end it where ``wanted`` is False."""
 
     viewer: int
     topic: str
@@ -117,7 +117,7 @@ class ViewerServer:
         self._lock = Lock()
         self._channels: list[dict[str, object]] = []
         self._open: list[_Viewer] = []
-        self._wishes: list[Wish] = []
+        self._requests: list[SubscriptionRequest] = []
         self._wanting: dict[str, set[int]] = defaultdict(set)
         self._made = 0
         try:
@@ -156,14 +156,14 @@ class ViewerServer:
         """Topics that anybody wants."""
         return {topic for topic, viewers in self._wanting.items() if viewers}
 
-    def new_wishes(self) -> list[Wish]:
-        """Take the wishes since the last call into account, and give them."""
+    def new_requests(self) -> list[SubscriptionRequest]:
+        """Take the requests since the last call into account, and give them."""
         with self._lock:
-            wishes, self._wishes = self._wishes, []
-        for wish in wishes:
+            requests, self._requests = self._requests, []
+        for wish in requests:
             viewers = self._wanting[wish.topic]
             (viewers.add if wish.wanted else viewers.discard)(wish.viewer)
-        return wishes
+        return requests
 
     def pass_on(self, topic: str, data: bytes, stamp: int) -> None:
         """Pass a serialized message on to all viewers that want its topic; ``stamp`` in ns."""
@@ -257,7 +257,7 @@ class ViewerServer:
             with self._lock:
                 self._open.remove(viewer)
                 for topic in set(viewer.topics.values()):
-                    self._wishes.append(Wish(viewer.number, topic, False))
+                    self._requests.append(SubscriptionRequest(viewer.number, topic, False))
 
     def _greetings(self) -> list[dict[str, object]]:
         capabilities = ['time'] if self._tells_time else []
@@ -288,5 +288,9 @@ class ViewerServer:
                 if isinstance(number, int):
                     viewer.topics.pop(number, None)
             after = set(viewer.topics.values())
-            self._wishes += [Wish(viewer.number, topic, True) for topic in after - before]
-            self._wishes += [Wish(viewer.number, topic, False) for topic in before - after]
+            self._requests += [
+                SubscriptionRequest(viewer.number, topic, True) for topic in after - before
+            ]
+            self._requests += [
+                SubscriptionRequest(viewer.number, topic, False) for topic in before - after
+            ]

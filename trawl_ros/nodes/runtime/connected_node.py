@@ -23,19 +23,18 @@ from trawl_ros.nodes.graph.graph_checks import (
     SHARED,
     of_one_node,
 )
-from trawl_ros.nodes.graph.matching_qos import asks_more, matching
-from trawl_ros.nodes.graph.source import Source
+from trawl_ros.nodes.graph.source import Source, asks_more, matching
 from trawl_ros.nodes.runtime.incoming import (
     Incoming,
+    Turns,
     believing_clock,
     decoding,
     error_of_program,
+    message_class,
     settling,
 )
-from trawl_ros.nodes.runtime.message_classes import message_class
 from trawl_ros.nodes.runtime.qos import offered, overriding
 from trawl_ros.nodes.runtime.traffic import Traffic
-from trawl_ros.nodes.runtime.turns import Turns
 from trawl_ros.records.topics import CLOCK, NAMESPACE, find_topic
 
 DIAGNOSTICS = '/diagnostics'
@@ -45,8 +44,9 @@ RCLError = rclpy_implementation.RCLError
 
 @dataclass(frozen=True)
 class Listener:
-    """Subscription, type of its topic, and what makes another one by a profile and whether
-    users may override that.
+    """Subscription with the type of its topic.
+
+    ``subscribe`` makes another one from a QoS profile and a flag: may users override it?
     """
 
     subscription: Subscription

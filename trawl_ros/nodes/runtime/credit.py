@@ -21,6 +21,61 @@ from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.records.topics import SYNC
 
+LARGEST_DELAY_S = 1.0
+"""Wall time that is made up for; what is beyond it is lost, so that no rush follows a pause."""
+
+
+class Pacer:
+    """Pacer of data time against wall time.
+
+    Parameters
+    ----------
+    factor
+        Data seconds per wall second; 0 sets no pace.
+    clock
+        Gives wall time in s.
+
+    Attributes
+    ----------
+    lost_s : float
+        Wall time (s) by which data fell behind for good.
+    """
+
+    def __init__(self, factor: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._factor = factor
+        self._origin: tuple[float, float] | None = None
+        self.lost_s = 0.0
+
+    @property
+    def factor(self) -> float:
+        """Data seconds per wall second; 0 sets no pace."""
+        return self._factor
+
+    def change(self, factor: float) -> None:
+        """Change the factor, from the present data time on."""
+        self._factor = factor
+        self._origin = None
+
+    def restart(self) -> None:
+        """Take the next data time as the present."""
+        self._origin = None
+
+    def due(self, data_s: float) -> bool:
+        """True if data of this time (s) may be published."""
+        if self._factor == 0.0:
+            return True
+        now = self._clock()
+        if self._origin is None:
+            self._origin = (now, data_s)
+        wall, data = self._origin
+        late = now - wall - (data_s - data) / self._factor
+        if late > LARGEST_DELAY_S:
+            self.lost_s += late
+            self._origin = (now, data_s)
+        return late >= 0.0
+
+
 HEADER = 'std_msgs/msg/Header'
 INTERVAL_NS = SECOND // 2
 """Data time between two reports of progress."""
@@ -106,7 +161,7 @@ class ConsumerProgress:
         """Register that all up to this stamp (ns) is dealt with; an earlier one starts anew."""
         self._done = stamp
         self._heard_at = time.monotonic()
-        self._node.headway.reached(stamp)
+        self._node.real_time_factor.reached(stamp)
         if not 0 <= stamp - self._reported < INTERVAL_NS:
             self._report()
 
@@ -218,7 +273,7 @@ class Consumers:
     def sent(self, stamp: int) -> None:
         """Register the newest stamp that was published."""
         self._span = (self._span[0], stamp)
-        self._node.headway.reached(stamp)
+        self._node.real_time_factor.reached(stamp)
 
     def followed(self, stamp: int) -> bool:
         """True if all that count have come to a stamp (ns); asked when the source could go on."""

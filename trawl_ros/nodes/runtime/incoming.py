@@ -1,9 +1,11 @@
-"""Boundary of subscriptions: no error of a message or its handler ends a node."""
+"""Incoming messages: decoded in turns, and no error of a message or its handler ends a node."""
 
 import inspect
 import traceback
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
+from threading import RLock
 from typing import Any
 
 from trawl_ros.core.errors import MessageError, TrawlError
@@ -14,8 +16,64 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import deserialize
 from trawl_ros.messages.stamps import from_time, stamp_of
 from trawl_ros.nodes.graph.source import Source
-from trawl_ros.nodes.runtime.turns import Turns
 from trawl_ros.records.topics import CLOCK
+
+
+class Turns:
+    """Turns of a node's callbacks: one at a time, and none after the end.
+
+    A multi-threaded executor may still hold callbacks of a node that is destroyed, and an
+    application may set parameters from another thread.
+    """
+
+    def __init__(self) -> None:
+        self._lock = RLock()
+        self._over = False
+
+    def __enter__(self) -> bool:
+        """Wait for the turn; False once the node has ended."""
+        self._lock.acquire()
+        return not self._over
+
+    def __exit__(self, *_: object) -> None:
+        self._lock.release()
+
+    def end(self) -> bool:
+        """Wait for the callback under way, and refuse all others; True for the first call."""
+        with self as first:
+            self._over = True
+        return first
+
+
+def installed(type_name: str) -> bool:
+    """True if the package of a type is installed."""
+    try:
+        message_class(type_name)
+    except MessageError:
+        return False
+    return True
+
+
+def message_class(type_name: str) -> Any:
+    """Find the class of a type such as ``sensor_msgs/msg/JointState``.
+
+    Raises
+    ------
+    MessageError
+        If no installed package has it.
+    """
+    parts = type_name.split('/')
+    if len(parts) == 3 and all(part.isidentifier() for part in parts):
+        package, kind, name = parts
+        try:
+            return getattr(import_module(f'{package}.{kind}'), name)
+        except (ImportError, AttributeError):
+            pass
+    raise MessageError(
+        f'{type_name}: no installed package has this message type; expected one such as '
+        'sensor_msgs/msg/JointState'
+    )
+
 
 FAR_CLOCK_NS = 10 * SECOND
 """Stamps of /clock further than this from the last may be false: it goes on in small steps."""

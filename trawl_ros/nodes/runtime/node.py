@@ -1,7 +1,7 @@
 """Base class of all nodes: parameters, diagnostics, a clean end."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Coroutine, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
@@ -20,17 +20,90 @@ from trawl_ros.core.limits import DIAGNOSIS
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
-from trawl_ros.nodes.graph.elsewhere import elsewhere
-from trawl_ros.nodes.graph.graph_checks import clock_status, connection_problems
-from trawl_ros.nodes.runtime.awaiting_service import PERIOD_S, Answer, AwaitingService
+from trawl_ros.nodes.graph.graph_checks import clock_status, connection_problems, elsewhere
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS, ConnectedNode
-from trawl_ros.nodes.runtime.headway import Headway
 from trawl_ros.nodes.runtime.incoming import (
     error_of_program,
 )
-from trawl_ros.nodes.runtime.introduction import introduction
 from trawl_ros.nodes.runtime.parameters import ParameterError, Parameters, Spec
+from trawl_ros.nodes.runtime.traffic import RealTimeFactor
 from trawl_ros.records.topics import CLOCK
+
+PERIOD_S = 0.1
+"""Period at which requests are taken, and coroutines asked."""
+
+Answer = Callable[[Any, Any], Coroutine[Any, Any, Any]]
+
+
+class AwaitingService:
+    """Answers of a service that no executor sees.
+
+    Parameters
+    ----------
+    service
+        Of a node that does not list it among its services.
+    answer
+        Coroutine function from request and response to the response; raises nothing.
+    """
+
+    def __init__(self, service: Service, answer: Answer) -> None:
+        self._service, self._answer = service, answer
+        self._pending: list[tuple[Coroutine[Any, Any, Any], Any]] = []
+
+    def go_on(self) -> None:
+        """Take a request, where there is one, and send the answers that are there."""
+        kind, handle = self._service.srv_type, self._service.handle
+        with handle:
+            request, header = handle.service_take_request(kind.Request)
+        if header is not None:
+            self._pending.append((self._answer(request, kind.Response()), header))
+        for one in tuple(self._pending):
+            coroutine, header = one
+            try:
+                coroutine.send(None)
+            except StopIteration as end:
+                self._pending.remove(one)
+                self._service.send_response(end.value, header)
+
+
+SAID = ('gear', 'scenario', 'mode', 'bag', 'output', 'state', 'time_scale', 'rate')
+"""Parameters that say what a node works on."""
+
+MOST_TOPICS = 6
+
+
+def introduction(
+    kind: type, values: Mapping[str, Any], namespace: str, topics: Mapping[str, Sequence[str]]
+) -> list[str]:
+    """Give the lines.
+
+    Parameters
+    ----------
+    kind
+        Class of the node; one that does not say what it does has nothing to say.
+    values
+        Parameters by name.
+    namespace
+        Of the node, with which names of topics are not to begin.
+    topics
+        Full names by what the node does with them.
+    """
+    words = vars(kind).get('__doc__')
+    if not words:
+        return []
+    first = words.split('\n\n', 1)[0].split('. ', 1)[0]
+    sentence = ' '.join(first.replace('`', '').split()).rstrip('.')
+    work = [f'{name} {values[name]}' for name in SAID if values.get(name) not in (None, '')]
+    lines = [f'{sentence} ({", ".join(work)})' if work else sentence]
+    listed = [f'{what} {_some(names, namespace)}' for what, names in topics.items() if names]
+    return [*lines, f'in {namespace}: {"; ".join(listed)}'] if listed else lines
+
+
+def _some(names: Iterable[str], namespace: str) -> str:
+    short = [name.removeprefix(f'{namespace.rstrip("/")}/') for name in names]
+    rest = len(short) - MOST_TOPICS
+    return ', '.join(short[:MOST_TOPICS]) + (f' and {rest} more' if rest > 0 else '')
+
 
 DIAGNOSTICS_PERIOD_S = 1.0
 
@@ -50,7 +123,7 @@ class TrawlNode(ConnectedNode):
     ----------
     parameters : Parameters
         The node's declared parameters.
-    headway : Headway
+    real_time_factor : RealTimeFactor
         Newest stamps of its data.
 
     Raises
@@ -68,7 +141,7 @@ class TrawlNode(ConnectedNode):
         self._troubles: dict[str, str] = {}
         self._awaiting: list[Service] = []
         super().__init__(name, **kwargs)
-        self.headway = Headway()
+        self.real_time_factor = RealTimeFactor()
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._said: dict[str, tuple[int, str]] = {}
         self.parameters = Parameters(self, self.SPECS, self.objection, self.parameter_changed)
@@ -159,8 +232,9 @@ class TrawlNode(ConnectedNode):
         return (service for service in super().services if service not in self._awaiting)
 
     def offer_awaiting(self, service: str, answer: Answer) -> None:
-        """Offer a Trigger service that a coroutine answers, messages coming in meanwhile; an error
-        of it is its refusal, with reason.
+        """Offer a Trigger service that a coroutine answers while messages come in.
+
+        An error of the coroutine becomes a refusal with its reason.
         """
 
         async def refusing(request: Any, response: Any) -> Any:
@@ -211,7 +285,7 @@ class TrawlNode(ConnectedNode):
     def all_statuses(self) -> list[Status]:
         """Give what the node says of itself on /diagnostics, each sentence and value bounded."""
         clock = clock_status(self)
-        clock = replace(clock, values={**clock.values, **self.headway.report()})
+        clock = replace(clock, values={**clock.values, **self.real_time_factor.report()})
         return [_bounded(status) for status in (self._traffic_status(), clock, *self.statuses())]
 
     def _report(self) -> None:

@@ -1,13 +1,92 @@
-"""Readings of instruments: decoded, possible where a controller follows them, and of one source."""
+"""Checks of instrument readings: possible values, one source, and streams that begin again."""
 
 from collections import defaultdict
 from typing import Any
 
 from trawl_ros.bags.one_source import SourceWatch
 from trawl_ros.core.errors import MessageError
+from trawl_ros.core.stamps import CONFIRMING_READINGS
+from trawl_ros.core.time import SECOND
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.records.possible import impossible
-from trawl_ros.records.samples import Sample
+from trawl_ros.records.samples import Sample, WinchSample
+
+BACK_NS = 10 * SECOND
+"""Stamps that go back by more than this play anew; less is a message that is late."""
+
+MOST_HELD = 2000
+"""Samples held back at most: what all instruments say in some ten seconds."""
+
+
+class Rewinding:
+    """Detector of a rewound stream, such as a bag that loops, told from single false stamps.
+
+    The winch tells the time, for without it there are no windows. What goes back is held until
+    three of its readings in a row do, or one does not: forgetting all for one false stamp
+    would be worse than to refuse the reading, and what the new round begins with is not to be
+    lost. A sensor whose own clock is set back is no new round.
+
+    Parameters
+    ----------
+    newest
+        Newest stamp (ns) of the winch, where it is known from before.
+    """
+
+    def __init__(self, newest: int | None = None) -> None:
+        self._newest = newest
+        self._held: list[Sample] = []
+        self._leaps: list[int] = []
+
+    def forget(self) -> None:
+        """Reset; the next sample is the beginning."""
+        self._newest, self._held, self._leaps = None, [], []
+
+    def take(self, sample: Sample) -> tuple[bool, list[Sample]]:
+        """Filter the next sample.
+
+        Returns
+        -------
+        bool
+            True if the stream begins anew before these samples.
+        list of Sample
+            Samples to deal with now, in order of arrival.
+        """
+        before, stamp = self._newest, sample.stamp
+        back = before is not None and stamp < before - BACK_NS
+        if back:
+            self._held.append(sample)
+        if isinstance(sample, WinchSample):
+            leaps = before is not None and abs(stamp - before) > BACK_NS
+            if leaps and not self._confirmed(stamp):
+                return False, [] if back else [sample]
+            self._newest = stamp if leaps or before is None else max(stamp, before)
+            held, self._held, self._leaps = self._held, [], []
+            return back, held if back else [*held, sample]
+        if not back:
+            return False, [sample]
+        return False, [self._held.pop(0)] if len(self._held) > MOST_HELD else []
+
+    def _confirmed(self, stamp: int) -> bool:
+        """True if enough readings of the winch have leapt to about here."""
+        self._leaps = [leap for leap in self._leaps if abs(stamp - leap) <= BACK_NS]
+        self._leaps.append(stamp)
+        return len(self._leaps) >= CONFIRMING_READINGS
+
+
+class Reached:
+    """Newest stamp (ns) so far, 0 before any; single ones far ahead do not count."""
+
+    def __init__(self, stamp: int = 0) -> None:
+        self.stamp = stamp
+        self._ahead = 0
+
+    def take(self, stamp: int) -> int:
+        """Register the next stamp, and return the newest."""
+        leaps = self.stamp > 0 and stamp > self.stamp + BACK_NS
+        self._ahead = self._ahead + 1 if leaps else 0
+        if not leaps or self._ahead >= CONFIRMING_READINGS:
+            self.stamp = max(stamp, self.stamp)
+        return self.stamp
 
 
 def possible_sample(topic: str, message: Any) -> Sample:

@@ -1,25 +1,25 @@
-"""Advice on the next manoeuvre, computed in threads of its own with spare time."""
+"""Worker thread that advises on the next manoeuvre, with time that nothing else needs."""
 
 import time
 from collections.abc import Callable
-from queue import SimpleQueue
 from threading import Event, Thread
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.core.errors import sentence_of
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.planning.advice import Advice
 from trawl_ros.estimation.planning.next_manoeuvre import Adviser, manoeuvre_of
+from trawl_ros.nodes.workers.worker import Worker
 
 IDLE_S = 0.1
-"""Wait before it asks again whether the estimator is at rest."""
+"""Time (s) after which the estimator is asked again whether it is at rest."""
 
 
-class AdvisingThread(Thread):
-    """Chooses the next manoeuvre after each window, and anew whenever more are known.
+class AdviceWorker(Worker[object]):
+    """Worker thread that chooses the next manoeuvre after each window.
 
-    Manoeuvres are looked up from the beginning on: until the first window, with the board as it is
-    believed to be.
+    Candidate manoeuvres are solved in a second thread from the beginning on; until the first
+    window, with the board as it is believed to be. A choice is made again whenever more of them
+    are known.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class AdvisingThread(Thread):
     believed
         Coefficients (12,) before the first window.
     share
-        Part of a core that looking manoeuvres up may take.
+        Part of a core that solving manoeuvres may take.
     at_rest
         True if the estimator has nothing to do: it comes first.
     on_advice
@@ -44,78 +44,72 @@ class AdvisingThread(Thread):
         at_rest: Callable[[], bool],
         on_advice: Callable[[Advice | None, str], None],
     ) -> None:
-        super().__init__(name='advising', daemon=True)
+        super().__init__('advice')
         self._adviser = adviser
         self._believed = believed
         self._share = share
-        self._at_rest = at_rest
+        self._at_rest_elsewhere = at_rest
         self._on_advice = on_advice
-        self._asked: SimpleQueue[None] = SimpleQueue()
         self._fit: Fit | None = None
         self._advice: Advice | None = None
+        self._more = True
         self._fresh, self._stopped = Event(), Event()
-        # A manoeuvre may take seconds to be looked up, for which a fit is not to wait.
-        self._looking = Thread(target=self._look, name='looking up', daemon=True)
+        # Solving a manoeuvre may take seconds; a new fit must not wait for it.
+        self._solving = Thread(target=self._solve_all, name='manoeuvres', daemon=True)
 
     def fitted(self, fit: Fit) -> None:
         """Hand over the newest fit; one without windows withdraws the advice."""
         self._fit = fit
         self._fresh.set()
-        self._asked.put(None)
+        self.put(fit)
 
     def stop(self) -> None:
-        """End the thread, and wait for it."""
+        """End both threads, and wait for them."""
         self._stopped.set()
         self._fresh.set()
-        self._asked.put(None)
-        self.join()
-        self._looking.join()
+        super().stop()
+        self._solving.join()
 
     def run(self) -> None:
         """Advise until stopped."""
-        self._looking.start()
-        while True:
-            self._asked.get()
-            while not self._asked.empty():
-                self._asked.get()
-            if self._stopped.is_set():
-                return
-            self._attempt(self._advise)
+        self._solving.start()
+        super().run()
 
-    def _look(self) -> None:
-        """Look manoeuvres up until stopped."""
+    def do(self, work: object) -> None:
+        """Choose a manoeuvre by the newest fit, once for all that is queued."""
+        if self._queue.empty() and not self._stopped.is_set():
+            self._telling('advising', self._advise)
+
+    def _advise(self) -> None:
+        if self._fit is not None:
+            # An error while solving keeps the advice; an error while advising withdraws it.
+            self._advice = None
+            self._advice = self._adviser.advise(self._fit)
+            self._on_advice(self._advice, self._adviser.trouble)
+
+    def _solve_all(self) -> None:
         while not self._stopped.is_set():
-            if not self._at_rest():
+            if not self._at_rest_elsewhere():
                 self._stopped.wait(IDLE_S)
                 continue
             self._fresh.clear()
             began = time.thread_time()
-            if self._attempt(self._look_up):
+            if self._telling('solving', self._solve_next) and self._more:
                 self._stopped.wait((time.thread_time() - began) * (1.0 / self._share - 1.0))
             else:
                 self._fresh.wait()
 
-    def _attempt(self, act: Callable[[], bool]) -> bool:
-        try:
-            return act()
-        except Exception as reason:
-            # Without advice the node still estimates, so this ends the thread's work on this fit.
-            self._on_advice(self._advice, sentence_of(reason))
-        return False
-
-    def _advise(self) -> bool:
-        if self._fit is not None:
-            # An error in looking up takes no advice away, one in advising does.
-            self._advice = None
-            self._advice = self._adviser.advise(self._fit)
-            self._on_advice(self._advice, self._adviser.trouble)
-        return True
-
-    def _look_up(self) -> bool:
+    def _solve_next(self) -> None:
         fit = self._fit
         if fit is None or not fit.windows:
-            more = self._adviser.look_up(self._believed)
+            self._more = self._adviser.look_up(self._believed)
         else:
-            more = self._adviser.look_up(fit.coefficients, manoeuvre_of(fit))
-        self._asked.put(None)
-        return more
+            self._more = self._adviser.look_up(fit.coefficients, manoeuvre_of(fit))
+        self.put(fit)
+
+    def _telling(self, activity: str, act: Callable[[], None]) -> bool:
+        """Attempt an action; without advice the node still estimates, so an error is only told."""
+        done = self.attempt(activity, act)
+        if not done:
+            self._on_advice(self._advice, self.troubles[activity])
+        return done

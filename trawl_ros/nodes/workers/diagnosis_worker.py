@@ -1,14 +1,13 @@
 """Worker thread that diagnoses a tow in progress."""
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from dataclasses import dataclass
-from queue import SimpleQueue
-from threading import Event, Lock, Thread
+from threading import Lock
 
 from trawl_ros.core.errors import sentence_of
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.nodes.workers.identification_worker import POLL_S
+from trawl_ros.nodes.workers.worker import Worker
 
 Windows = tuple[SteadyWindow, ...]
 
@@ -21,17 +20,15 @@ class DiagnosisOutcome:
     trouble: str = ''
 
 
-class WatchingThread(Thread):
-    """Worker thread that diagnoses all windows so far; of several sets the newest counts.
-
-    Coroutines may await the thread: that lasts until the newest windows are diagnosed.
+class DiagnosisWorker(Worker[Windows]):
+    """Worker thread that diagnoses all windows so far; of several queued sets the newest counts.
 
     Parameters
     ----------
     diagnose
         From windows to a diagnosis.
     on_outcome
-        Called in this thread after each look, but not after one at windows that are forgotten.
+        Called in this thread after each diagnosis, unless its windows were forgotten meanwhile.
     """
 
     def __init__(
@@ -39,28 +36,18 @@ class WatchingThread(Thread):
         diagnose: Callable[[Windows], Diagnosis],
         on_outcome: Callable[[DiagnosisOutcome], None],
     ) -> None:
-        super().__init__(name='diagnosis', daemon=True)
+        super().__init__('diagnosis')
         self._diagnose = diagnose
         self._on_outcome = on_outcome
-        self._queue: SimpleQueue[None] = SimpleQueue()
         self._handing_over = Lock()
         self._newest: Windows | None = None
         self._forgotten = 0
-        self._stopped = False
-        self._at_rest = Event()
-        self._at_rest.set()
-
-    @property
-    def idle(self) -> bool:
-        """True if the newest windows are diagnosed."""
-        return self._at_rest.is_set()
 
     def look_at(self, windows: Windows) -> None:
         """Hand over all windows so far."""
         with self._handing_over:
             self._newest = windows
-            self._at_rest.clear()
-        self._queue.put(None)
+        self.put(windows)
 
     def forget(self) -> None:
         """Discard the windows that were handed over before."""
@@ -68,36 +55,16 @@ class WatchingThread(Thread):
             self._newest = None
             self._forgotten += 1
 
-    def stop(self) -> None:
-        """End the thread after its queued work, and wait for it."""
-        self._stopped = True
-        self._queue.put(None)
-        self.join()
-
-    def __await__(self) -> Generator[None, None, None]:
-        # Some executors ask again at once, which would take the processor from this thread.
-        while not self._at_rest.wait(POLL_S):
-            yield
-
-    def run(self) -> None:
-        """Diagnose until stopped."""
-        while not (self._stopped and self.idle):
-            self._queue.get()
-            with self._handing_over:
-                windows, self._newest = self._newest, None
-                forgotten = self._forgotten
-            if windows is not None:
-                outcome = self._attempt(windows)
-                with self._handing_over:
-                    if forgotten == self._forgotten:
-                        self._on_outcome(outcome)
-            with self._handing_over:
-                if self._newest is None:
-                    self._at_rest.set()
-
-    def _attempt(self, windows: Windows) -> DiagnosisOutcome:
+    def do(self, work: Windows) -> None:
+        """Diagnose the windows unless newer ones are queued."""
+        with self._handing_over:
+            if work is not self._newest:
+                return
+            forgotten = self._forgotten
         try:
-            return DiagnosisOutcome(self._diagnose(windows))
+            outcome = DiagnosisOutcome(self._diagnose(work))
         except Exception as reason:
-            # Unsaid, it would end the thread: the node would look alive and diagnose nothing.
-            return DiagnosisOutcome(trouble=sentence_of(reason))
+            outcome = DiagnosisOutcome(trouble=sentence_of(reason))
+        with self._handing_over:
+            if forgotten == self._forgotten:
+                self._on_outcome(outcome)

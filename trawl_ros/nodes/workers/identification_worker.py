@@ -6,22 +6,18 @@ what others may know of it goes out as immutable records.
 
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, replace
-from queue import Empty, SimpleQueue
-from threading import Event, Thread
+from threading import Event
 
-from trawl_ros.core.errors import sentence_of
 from trawl_ros.estimation.fit.whiteness import Whiteness
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
-from trawl_ros.nodes.runtime.rewinding import Reached
+from trawl_ros.nodes.runtime.reading import Reached
 from trawl_ros.nodes.workers.motion_learner import MotionLearner
 from trawl_ros.nodes.workers.outcome import EstimatorOutcome, readings_of, whiteness_of
+from trawl_ros.nodes.workers.worker import POLL_S, Worker
 from trawl_ros.records.samples import Sample
 
 QUIET_S = 0.5
 """A wish to finish is granted when no sample has come for this long."""
-
-POLL_S = 0.005
-"""Time for which an executor is held up to ask whether a request is granted."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +28,6 @@ class _Look:
 @dataclass(frozen=True)
 class _Reset:
     """Request to reset the identification."""
-
-
-@dataclass(frozen=True)
-class _StopRequest:
-    """Request to end the thread."""
 
 
 class Finish:
@@ -61,10 +52,10 @@ class Finish:
             yield
 
 
-Work = Sample | Finish | _Look | _Reset | _StopRequest
+Work = Sample | Finish | _Look | _Reset
 
 
-class IdentificationWorker(Thread):
+class IdentificationWorker(Worker[Work]):
     """Worker thread that feeds an identification.
 
     Parameters
@@ -96,42 +87,28 @@ class IdentificationWorker(Thread):
         report: Callable[[Identification], str],
         motion: MotionLearner | None = None,
     ) -> None:
-        super().__init__(name='identification', daemon=True)
+        super().__init__('identification')
         self._identification = identification
         self._on_outcome = on_outcome
         self._dealt_with = dealt_with
         self._save = save
         self._report = report
         self._motion = motion
-        self._queue: SimpleQueue[Work] = SimpleQueue()
         self._wishes: list[Finish] = []
-        self._handed_over = 0
-        self._dealt = 0
         self._fed = 0
         self._reached = Reached(
             max((event.window.end_ns for event in identification.course), default=0)
         )
-        self._troubles: dict[str, str] = {}
         self._whiteness: Mapping[str, Whiteness | None] = whiteness_of(identification)
         self.outcome = self._outcome()
 
-    @property
-    def idle(self) -> bool:
-        """True if all samples that were handed over are dealt with."""
-        return self._handed_over == self._dealt
-
-    def feed(self, sample: Sample) -> None:
-        """Queue a sample."""
-        self._handed_over += 1
-        self._queue.put(sample)
-
     def reset(self) -> None:
         """Discard all that was handed over before."""
-        self._queue.put(_Reset())
+        self.put(_Reset())
 
     def look(self) -> None:
         """Request an update of `outcome`."""
-        self._queue.put(_Look())
+        self.put(_Look())
 
     def finish(self, *, whole: bool = True) -> Finish:
         """Request to converge the estimate and to write the report, once no sample waits.
@@ -139,29 +116,25 @@ class IdentificationWorker(Thread):
         All of the tow is fitted where ``whole``, which takes minutes for each hour of it.
         """
         wish = Finish(whole=whole)
-        self._queue.put(wish)
+        self.put(wish)
         return wish
 
-    def stop(self) -> None:
-        """End the thread after its queued work, and wait for it."""
-        self._queue.put(_StopRequest())
-        self.join()
+    def patience_s(self) -> float | None:
+        """Return the quiet time (s) after which a wish to finish is granted."""
+        return QUIET_S if self._wishes else None
+
+    def be_quiet(self) -> None:
+        """Grant the wishes to finish."""
+        self._grant()
 
     def run(self) -> None:
-        """Work until stopped."""
-        while True:
-            try:
-                work = self._queue.get(timeout=QUIET_S if self._wishes else None)
-            except Empty:
-                self._grant()
-                continue
-            if isinstance(work, _StopRequest):
-                if self._wishes:
-                    self._grant()
-                return
-            self._do(work)
+        """Work until stopped; wishes that are left are granted."""
+        super().run()
+        if self._wishes:
+            self._grant()
 
-    def _do(self, work: Work) -> None:
+    def do(self, work: Work) -> None:
+        """Feed a sample, or follow a request."""
         match work:
             case Finish():
                 self._wishes.append(work)
@@ -170,16 +143,14 @@ class IdentificationWorker(Thread):
                 if self._motion is not None:
                     self._motion.reset()
                 self._fed, self._reached = 0, Reached()
-                self._troubles, self._whiteness = {}, {}
+                self._whiteness = {}
+                self.troubles.clear()
                 self._tell()
             case _Look():
                 self._look()
-            case _StopRequest():
-                pass
             case _:
-                self._attempt('estimating', lambda: self._use(work))
-                self._dealt += 1
-                self._attempt('reporting', lambda: self._dealt_with(self._reached.stamp))
+                self.attempt('estimating', lambda: self._use(work))
+                self.attempt('reporting', lambda: self._dealt_with(self._reached.stamp))
 
     def _look(self) -> None:
         if self.outcome.finished is None:
@@ -206,16 +177,8 @@ class IdentificationWorker(Thread):
             self._keep()
 
     def _keep(self) -> None:
-        self._troubles.pop('saving', None)
-        self._attempt('saving', lambda: self._save(self._identification))
-
-    def _attempt(self, activity: str, act: Callable[[], None]) -> None:
-        """Run an action; an error of it is reported, and the thread lives on."""
-        try:
-            act()
-        except Exception as reason:
-            # Unsaid, it would end the thread: the node would look alive and estimate nothing.
-            self._troubles[activity] = sentence_of(reason)
+        self.troubles.pop('saving', None)
+        self.attempt('saving', lambda: self._save(self._identification))
 
     def _tell(self, finished: str | None = None, failed: bool = False) -> None:
         self.outcome = self._outcome(finished, failed)
@@ -245,9 +208,9 @@ class IdentificationWorker(Thread):
             self._whiteness = whiteness_of(self._identification)
             sentences.append(self._report(self._identification))
 
-        self._troubles.pop('finishing', None)
-        self._attempt('finishing', end)
-        return (sentences[0], False) if sentences else (self._troubles.pop('finishing'), True)
+        self.troubles.pop('finishing', None)
+        self.attempt('finishing', end)
+        return (sentences[0], False) if sentences else (self.troubles.pop('finishing'), True)
 
     def _outcome(self, finished: str | None = None, failed: bool = False) -> EstimatorOutcome:
         identification = self._identification
@@ -261,7 +224,7 @@ class IdentificationWorker(Thread):
             fit=identification.estimator.fit,
             motion=None if self._motion is None else self._motion.knowledge,
             why_not=identification.why_not(),
-            troubles=dict(self._troubles),
+            troubles=dict(self.troubles),
             finished=finished,
             failed=failed,
         )

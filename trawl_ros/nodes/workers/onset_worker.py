@@ -1,34 +1,22 @@
-"""Worker thread that watches a tow in progress for what begins in it."""
+"""Worker thread that watches a tow in progress for effects that begin in it."""
 
-from collections.abc import Callable, Generator
-from dataclasses import dataclass
-from queue import SimpleQueue
-from threading import Event, Lock, Thread
+from collections.abc import Callable
+from threading import Lock
 from typing import TYPE_CHECKING
 
-from trawl_ros.core.errors import sentence_of
 from trawl_ros.diagnosis.onset.findings import Finding
-from trawl_ros.nodes.workers.identification_worker import POLL_S
+from trawl_ros.nodes.workers.worker import Worker
 from trawl_ros.records.samples import Sample
 
 if TYPE_CHECKING:
     from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 
-
-@dataclass(frozen=True)
-class _Reset:
-    """Request to begin anew."""
+RESET = 'reset'
+WATCHING = 'watching'
 
 
-@dataclass(frozen=True)
-class _Stop:
-    """Request to end the thread."""
-
-
-class OnsetThread(Thread):
-    """Worker thread that feeds a monitor, in the order in which samples come.
-
-    Coroutines may await the thread: that lasts until all samples so far are dealt with.
+class OnsetWorker(Worker['Sample | str']):
+    """Worker thread that feeds a monitor with samples in order of arrival.
 
     Parameters
     ----------
@@ -46,74 +34,35 @@ class OnsetThread(Thread):
         on_finding: Callable[[Finding], None],
         dealt_with: Callable[[Sample], None],
     ) -> None:
-        super().__init__(name='onset', daemon=True)
+        super().__init__('onset')
         self._monitor, self._on_finding, self._dealt_with = monitor, on_finding, dealt_with
-        self._queue: SimpleQueue[Sample | _Reset | _Stop] = SimpleQueue()
-        self._using, self._counting = Lock(), Lock()
-        self._waiting = 0
-        self._at_rest = Event()
-        self._at_rest.set()
-        self.trouble = ''
+        self._using = Lock()
 
     @property
-    def idle(self) -> bool:
-        """True if all samples are dealt with."""
-        return self._at_rest.is_set()
-
-    def feed(self, sample: Sample) -> None:
-        """Queue a sample."""
-        self._put(sample)
+    def trouble(self) -> str:
+        """Sentence of the last error; '' without one."""
+        return self.troubles.get(WATCHING, '')
 
     def reset(self) -> None:
-        """Begin anew behind what was queued."""
-        self._put(_Reset())
+        """Begin a new tow after the queued samples."""
+        self.put(RESET)
 
     def dismiss(self, number: int) -> Finding | None:
         """Dismiss a finding between two samples; None where there is no such open one."""
         with self._using:
             return self._monitor.dismiss(number)
 
-    def stop(self) -> None:
-        """End the thread after its queued work, and wait for it."""
-        self._put(_Stop())
-        self.join()
-
-    def __await__(self) -> Generator[None, None, None]:
-        # Some executors ask again at once, which would take the processor from this thread.
-        while not self._at_rest.wait(POLL_S):
-            yield
-
-    def _put(self, work: Sample | _Reset | _Stop) -> None:
-        with self._counting:
-            self._waiting += 1
-            self._at_rest.clear()
-        self._queue.put(work)
-
-    def run(self) -> None:
-        """Watch until stopped."""
-        while True:
-            work = self._queue.get()
-            try:
-                if isinstance(work, _Stop):
-                    return
-                self._do(work)
-            finally:
-                with self._counting:
-                    self._waiting -= 1
-                    if not self._waiting:
-                        self._at_rest.set()
-
-    def _do(self, work: Sample | _Reset) -> None:
-        try:
+    def do(self, work: Sample | str) -> None:
+        """Feed a sample, or reset the monitor."""
+        if isinstance(work, str):
             with self._using:
-                if isinstance(work, _Reset):
-                    self._monitor.reset()
-                    return
-                findings = self._monitor.feed(work)
-            for found in findings:
-                self._on_finding(found)
-        except Exception as reason:
-            # Unsaid, it would end the thread: the node would look alive and watch nothing.
-            self.trouble = sentence_of(reason)
-        if not isinstance(work, _Reset):
-            self._dealt_with(work)
+                self._monitor.reset()
+            return
+        self.attempt(WATCHING, lambda: self._feed(work))
+        self._dealt_with(work)
+
+    def _feed(self, sample: Sample) -> None:
+        with self._using:
+            findings = self._monitor.feed(sample)
+        for found in findings:
+            self._on_finding(found)

@@ -19,7 +19,7 @@ from trawl_ros.core.resources import share_path
 from trawl_ros.core.time import SECOND
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.running.live_nodes import BAG, LiveNodes
-from trawl_ros.nodes.playback.excerpt import Excerpt
+from trawl_ros.nodes.playback.replay import Excerpt
 
 REPLAY_S = 3600.0
 LEAST_RATIO, LEAST_IN_MOTION = 200.0, 30.0
