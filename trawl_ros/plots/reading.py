@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from trawl_ros.bags.reader import Bag, RawMessage
+from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.storage.stored import RawMessage
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.time import SECOND

@@ -8,7 +8,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Protocol
 
-from trawl_ros.bags.reader import Bag, RawMessage
+from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.storage.stored import RawMessage
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.core.time import SECOND

@@ -2,7 +2,8 @@
 
 from collections.abc import Collection, Iterator
 
-from trawl_ros.bags.reader import Bag, RawMessage
+from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.storage.stored import RawMessage
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.time import SECOND
 
