@@ -15,8 +15,8 @@ from rosbags.interfaces import Qos, QosDurability, QosReliability
 
 from trawl_ros.bags.header_stamps import StampReader, stamp_reader
 from trawl_ros.bags.reader import Bag
-from trawl_ros.bags.storage.stored import RawMessage
 from trawl_ros.bags.sources import BagFacts
+from trawl_ros.bags.storage.stored import RawMessage
 from trawl_ros.bags.topic_content import Finding, TopicContent
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.stamps import judge_stamps

@@ -15,9 +15,15 @@ from typing import Literal
 import numpy as np
 
 from trawl_ros.bags.logs.clock import ClockReader
-from trawl_ros.bags.logs.layout import BadRow, LogRow, read_rows
+from trawl_ros.bags.logs.layout import (
+    BadRow,
+    LogRow,
+    hemisphere_sign,
+    parse_degrees,
+    parse_number,
+    read_rows,
+)
 from trawl_ros.bags.logs.mapping import ColumnMapping, LogMapping, TopicMapping, load_mapping
-from trawl_ros.bags.logs.numbers import hemisphere_sign, parse_degrees, parse_number
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError, LogError
 from trawl_ros.core.files import new_folder, written_folder
