@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import date, datetime, timezone
 
+from trawl_ros.core.stamps import DAY_NS
 from trawl_ros.core.time import SECOND
 from trawl_ros.sentences.table import SentenceField
 
-DAY = 86_400 * SECOND
 YEARS = range(1970, 2038)
 """Years that can be: stamps of messages count seconds in 32 bits."""
 
@@ -85,11 +85,11 @@ class SaidTime:
     def stamp(self, near: int | None) -> int | None:
         """Give the stamp (ns): on its day, else on that which brings it nearest to ``near``."""
         if self.day is not None:
-            return (self.day - _EPOCH).days * DAY + self.of_day
+            return (self.day - _EPOCH).days * DAY_NS + self.of_day
         if near is None:
             return None
-        around = near - near % DAY + self.of_day
-        return min((around - DAY, around, around + DAY), key=lambda stamp: abs(stamp - near))
+        around = near - near % DAY_NS + self.of_day
+        return min((around - DAY_NS, around, around + DAY_NS), key=lambda stamp: abs(stamp - near))
 
 
 def read_time(text: str) -> int:

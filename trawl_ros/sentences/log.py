@@ -17,14 +17,13 @@ from trawl_ros.core.errors import LogError
 from trawl_ros.core.foreign import open_file
 from trawl_ros.core.foreign import reading as reading_file
 from trawl_ros.core.limits import LOG_NULS
-from trawl_ros.core.stamps import LOG_APART_NS, judge_stamps
+from trawl_ros.core.stamps import DAY_NS, LOG_APART_NS, judge_stamps
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.fields import StatedTopic, WaterColumn
 from trawl_ros.records.possible import impossible, impossible_fields
 from trawl_ros.records.samples import Sample
 from trawl_ros.sentences.assembly import WINCH, SampleAssembly, samples_of
 from trawl_ros.sentences.codec import SentenceReader, Spoken
-from trawl_ros.sentences.fields import DAY
 from trawl_ros.sentences.framing import (
     LONGEST_LINE,
     Frame,
@@ -378,7 +377,7 @@ def _clock_differences(stamped: Sequence[tuple[Spoken, int]]) -> list[str]:
     differences: dict[str, list[int]] = defaultdict(list)
     for spoken, stamp in stamped:
         if spoken.time is not None and spoken.system != SHIP:
-            off = (spoken.time.of_day - stamp + DAY // 2) % DAY - DAY // 2
+            off = (spoken.time.of_day - stamp + DAY_NS // 2) % DAY_NS - DAY_NS // 2
             differences[spoken.system].append(off)
     notes = []
     for system, offs in differences.items():

@@ -10,12 +10,10 @@ from collections.abc import Hashable, Sequence
 from itertools import pairwise
 from statistics import median
 
+from trawl_ros.core.stamps import DAY_NS, END_NS
 from trawl_ros.core.time import SECOND
 from trawl_ros.sentences.codec import Spoken
-from trawl_ros.sentences.fields import DAY, SaidTime
-
-LATEST = 2**31 * SECOND
-"""ns; stamps of messages count seconds in 32 bits."""
+from trawl_ros.sentences.fields import SaidTime
 
 
 class ShipTimes:
@@ -29,7 +27,7 @@ class ShipTimes:
 
     def __init__(self, start: int | None) -> None:
         # Every time of day is nearest to noon on that same day.
-        self._near = None if start is None else start + DAY // 2
+        self._near = None if start is None else start + DAY_NS // 2
         self.moments: list[int] = []
         """Stamps (ns) in the order in which they were said, each once."""
         self.unused: Counter[str] = Counter()
@@ -52,7 +50,7 @@ class ShipTimes:
             self.undated += 1
             self.unused[f'{kind} with a time of day and no date'] += 1
             return None
-        if not 0 <= stamp < LATEST:
+        if not 0 <= stamp < END_NS:
             self.impossible[f'{kind} of a year that cannot be'] += 1
             return None
         self._near = stamp
@@ -80,13 +78,13 @@ def stamps_by_own_times(
     list of int or None
         Stamps, ns: the time that a sentence says, or the time said last; None before the first.
     """
-    near = None if start is None else start + DAY // 2
+    near = None if start is None else start + DAY_NS // 2
     last: int | None = None
     stamps: list[int | None] = []
     for time, stamp in zip(times, given, strict=True):
         if stamp is None and time is not None:
             said = time.stamp(near)
-            if said is not None and 0 <= said < LATEST:
+            if said is not None and 0 <= said < END_NS:
                 near = last = said
         stamps.append(last if stamp is None else stamp)
     return stamps

@@ -12,9 +12,10 @@ from trawl_ros.core.errors import LogError
 from trawl_ros.core.quantity import Quantity, check_quantity, check_unit
 from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import Record, load_yaml, validated
+from trawl_ros.core.stamps import DAY_NS
 from trawl_ros.core.units import UNITS
 from trawl_ros.records.fields import FIELDS, StatedTopic, WaterColumn
-from trawl_ros.sentences.fields import DAY, YEARS
+from trawl_ros.sentences.fields import YEARS
 from trawl_ros.sentences.log import SentenceLogOptions, TopicChoice, ship_kinds
 from trawl_ros.sentences.table import load_tables
 
@@ -168,7 +169,7 @@ class SentenceMapping(Record):
             water=self.water,
             keel_depth_m=self.keel_depth.si(),
             need_checksum=self.need_checksum,
-            start=None if first is None else (first - date(1970, 1, 1)).days * DAY,
+            start=None if first is None else (first - date(1970, 1, 1)).days * DAY_NS,
             recorder=ClockReader(self.recorder).read if self.recorder else None,
             leave_out=leave_out,
         )
