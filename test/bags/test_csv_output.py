@@ -5,7 +5,7 @@ from io import StringIO
 
 import pytest
 
-from trawl_ros.bags.csv_output import CsvOutput
+from trawl_ros.bags.export import CsvOutput
 
 FORMULAS = ('=1+1', '+1+1', '-1+1', '@SUM(A1)', '\t=1', '\r=1', '=cmd|"/c calc"!A1', '-', '+',
             '\n=1', '＝1+1', '＠SUM(A1)')  # fmt: skip

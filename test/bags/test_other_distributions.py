@@ -12,7 +12,6 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagsWriter
 from rosbags.typesys import Stores, get_typestore
 
-from trawl_ros.bags import unpacked
 from trawl_ros.bags.check import check_bag
 from trawl_ros.bags.reader import Bag, summarise
 from trawl_ros.bags.samples import SampleStream
@@ -385,13 +384,13 @@ def test_a_compressed_file_that_is_none_or_cut_short_is_named(tmp_path, change):
 
 
 def test_a_compressed_file_takes_no_more_than_there_is_room_for(tmp_path, monkeypatch):
-    monkeypatch.setattr(unpacked, 'SPARE_BYTES', 1 << 62)
+    monkeypatch.setattr('trawl_ros.bags.storage.packed.SPARE_BYTES', 1 << 62)
     with pytest.raises(BagError, match='no room'):
         Bag(packed(tmp_path, 'FILE', lambda data: data))
 
 
 def test_a_message_that_unpacks_to_too_much_takes_no_memory(tmp_path, monkeypatch):
-    monkeypatch.setattr('trawl_ros.bags.storage.chunks.MAX_CHUNK_BYTES', 1 << 16)
+    monkeypatch.setattr('trawl_ros.bags.storage.packed.MAX_CHUNK_BYTES', 1 << 16)
     bomb = zstandard.ZstdCompressor().compress(bytes(1 << 24))
     bag = Bag(packed(tmp_path, 'MESSAGE', lambda data: bomb))
     assert len(list(bag.messages())) == len(SAMPLES) - 1

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from trawl_ros.bags.logs.nmea import import_nmea
+from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.bags.sentence_log import write_sentence_log
 from trawl_ros.bags.writer import BagWriter
@@ -85,7 +85,7 @@ def test_a_bag_comes_back_from_sentences(system, bag, there, tmp_path):
     log, mapping = tmp_path / 'log.nmea', tmp_path / 'mapping.yaml'
     write_sentence_log(bag, [table], log, water=WATER, every_reading=True)
     mapping.write_text(MAPPING.format(date='', systems='' if system == 'ship' else system))
-    done = import_nmea(log, mapping, tmp_path / 'back')
+    done = import_log(log, mapping, tmp_path / 'back')
     assert done.notes == ()
     back = fields_in(tmp_path / 'back')
     steps = {
@@ -120,7 +120,7 @@ def imported(tmp_path, lines, systems, date=''):
     log, mapping = tmp_path / 'log.nmea', tmp_path / 'mapping.yaml'
     log.write_bytes(b'\r\n'.join(lines))
     mapping.write_text(MAPPING.format(date=date, systems=systems))
-    done = import_nmea(log, mapping, tmp_path / 'back')
+    done = import_log(log, mapping, tmp_path / 'back')
     return done, fields_in(tmp_path / 'back')
 
 
@@ -168,9 +168,9 @@ def test_of_two_systems_that_tell_a_topic_the_first_named_is_used(tmp_path):
     done, found = imported(tmp_path, lines, 'marport, simrad_iti')
     assert [fields['distance'] for fields in found.values()] == [pytest.approx(84.5)]
     assert done.left_out == {
-        'door/spread by simrad_iti, which marport tells': 1,
+        'simrad_iti for door/spread, which marport tells': 1,
         "sentence @IITDS: field 2 is 'f', expected 'M'": 1,
-        'sentence @IITDX, which no topic takes': 1,
+        'sentence @IITDX, which no table has': 1,
     }
 
 
@@ -182,7 +182,7 @@ def test_times_of_a_recorder_and_of_tag_blocks_are_those_of_gear_too(tmp_path):
     done, found = imported(tmp_path, lines, 'marport', recorder)
     ((_, stamp),) = found
     assert stamp == 1_785_580_731_250 * 1_000_000
-    assert done.left_out == {'sentence @IITDS, which no topic takes': 1}
+    assert done.left_out == {'sentence @IITDS, which no table has': 1}
     (tmp_path / 'tagged').mkdir()
     recorder = 'time: recorder\n  recorder: {format: milliseconds}'
     _, found = imported(tmp_path / 'tagged', [tag + spread], 'marport', recorder)

@@ -26,7 +26,7 @@ from trawl_ros.records.samples import (  # noqa: E402
     RangeSample,
     WinchSample,
 )
-from trawl_ros.sentences import tellers  # noqa: E402
+from trawl_ros.sentences import links  # noqa: E402
 from trawl_ros.sentences.framing import framed  # noqa: E402
 from trawl_ros.sentences.table import COMMANDS, load_table  # noqa: E402
 
@@ -192,7 +192,7 @@ def test_noise_is_counted_by_reason_and_what_is_whole_still_comes(graph, ship, p
 def test_of_two_senders_with_one_name_the_first_is_believed_until_it_is_silent(
     graph, ship, port, monkeypatch
 ):
-    monkeypatch.setattr(tellers, 'SILENT_NS', 2 * SECOND)
+    monkeypatch.setattr(links, 'SILENT_NS', 2 * SECOND)
     heard(graph, links=[f'udp://:{port}'], systems=['marport'])
     opened(graph, ship, f'udp://:{port}')
     other = '127.0.0.2'

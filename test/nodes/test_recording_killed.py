@@ -17,7 +17,7 @@ from rosbags.rosbag2 import Reader  # noqa: E402
 from trawl_ros.bags.reader import Bag  # noqa: E402
 from trawl_ros.bags.repair import repair_bag  # noqa: E402
 from trawl_ros.bags.storage.mcap_file import McapFile  # noqa: E402
-from trawl_ros.bags.storage.rosbag2_keys import lacking  # noqa: E402
+from trawl_ros.bags.storage.metadata_faults import lacking  # noqa: E402
 from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402

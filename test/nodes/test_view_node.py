@@ -11,11 +11,12 @@ from trawl_ros.messages.to_messages import sample_message  # noqa: E402
 from trawl_ros.nodes import view_node  # noqa: E402
 from trawl_ros.nodes.runtime.node import TrawlNode  # noqa: E402
 from trawl_ros.nodes.view_node import ViewNode  # noqa: E402
+from trawl_ros.plots.records import Quantities  # noqa: E402
 from trawl_ros.records.samples import RangeSample, WinchSample  # noqa: E402
 from trawl_ros.view import live  # noqa: E402
 from trawl_ros.view.live import LiveView  # noqa: E402
 from trawl_ros.view.reading import TOPICS  # noqa: E402
-from trawl_ros.view.records import Innovations, Note, Quantities  # noqa: E402
+from trawl_ros.view.records import Innovations, Note  # noqa: E402
 
 pytestmark = pytest.mark.ros
 

@@ -7,9 +7,8 @@ from PIL import Image
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.plots.film import MOST_FRAMES, Frame, frame_times, write_film
-from trawl_ros.plots.moments import GEAR, read_moments
+from trawl_ros.plots.moments import GEAR, read_moments, read_sweeps
 from trawl_ros.plots.shapes import gear_shape
-from trawl_ros.plots.sweeps import read_sweeps
 
 
 @pytest.fixture(scope='module')

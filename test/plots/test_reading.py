@@ -5,7 +5,7 @@ import pytest
 
 from trawl_ros.core.errors import BagError
 from trawl_ros.model.water import Water
-from trawl_ros.plots import reading
+from trawl_ros.plots import bag_messages
 from trawl_ros.plots.reading import read_history
 
 
@@ -44,12 +44,12 @@ def test_what_is_not_in_the_bag_is_not_there(readings_only):
 
 
 def test_a_long_series_is_thinned_evenly_and_said(bag, monkeypatch):
-    monkeypatch.setattr(reading, 'MOST_POINTS', 50)
+    monkeypatch.setattr(bag_messages, 'MOST_MESSAGES', 50)
     tow = read_history(bag, Water().depth, 'trawl')
     times = tow.measured['door_spread'].times
     assert len(times) <= 50
-    np.testing.assert_allclose(np.diff(times), 4.0)
-    assert 'door/spread: every 4th of 121 messages is drawn' in tow.problems
+    np.testing.assert_allclose(np.diff(times), 3.0)
+    assert 'door/spread: one of 3 of its 121 messages is shown' in tow.problems
     assert not any('truth' in problem for problem in tow.problems)
 
 
@@ -61,5 +61,5 @@ def test_a_bag_logged_late_keeps_the_times_of_its_stamps(known, tmp_path):
 
 
 def test_a_bag_with_nothing_to_draw_says_what_is_missing(bag):
-    with pytest.raises(BagError, match='none of the topics that can be drawn'):
+    with pytest.raises(BagError, match='none of the topics that can be shown'):
         read_history(bag, Water().depth, 'elsewhere')

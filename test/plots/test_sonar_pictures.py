@@ -6,10 +6,9 @@ import pytest
 from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.model.water import Water
-from trawl_ros.plots.moments import IMAGE, MOST_AWAY_S, SCAN, Moment
+from trawl_ros.plots.moments import IMAGE, MOST_AWAY_S, SCAN, Moment, read_sweeps, sweep_of
 from trawl_ros.plots.reading import read_history
 from trawl_ros.plots.sonar import seen, sonar_figure
-from trawl_ros.plots.sweeps import read_sweeps, sweep_of
 from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 
 REACH = 100.0

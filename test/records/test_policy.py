@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from trawl_ros.cli.policy import command
 from trawl_ros.core.resources import share_path
-from trawl_ros.records.policy import policy
+from trawl_ros.records.permissions import policy
 from trawl_ros.records.rights import OPERATOR, RIGHTS, SET_POINTS
 from trawl_ros.records.topics import COMMANDS, STATIC_TRANSFORMS, SYNC, TOPICS
 

@@ -32,8 +32,12 @@ def sign(field: SentenceField) -> str:
         return 'x' * max(field.digits, 1) + decimals + field.suffix
     if field.any is not None:
         return '…' if field.any else ''
+    if field.keel_offset is not None:
+        return 'x.x'
+    if field.text is not None:
+        return field.text
     signs = {'latitude': 'N', 'longitude': 'E'}
-    return field.text or field.status or field.time or field.date or signs[field.hemisphere or '']
+    return field.status or field.time or field.date or signs[field.hemisphere or '']
 
 
 def rows() -> list[str]:

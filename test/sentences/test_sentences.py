@@ -117,7 +117,7 @@ def test_tag_blocks_headers_and_what_a_recorder_wrote_are_no_hindrance(reader):
         (checked('MPMSD,T,PD,23,XST,ft,264.10'), r"field 5 is 'ft', expected 'm'"),
         (checked('XXYYY,1'), r'\$XXYYY, which no table has'),
         (checked('GPGGA,993851.00,5730.5,N,15215.2,W,1,09,0.9,12.0,M,,M,,'), 'no time'),
-        (checked('GPGGA,103851.00,5790.5,N,15215.2,W,1,09,0.9,12.0,M,,M,,'), 'no number'),
+        (checked('GPGGA,103851.00,5790.5,N,15215.2,W,1,09,0.9,12.0,M,,M,,'), 'a position that is'),
         (checked('GPGGA,103851.00,5730.5,X,15215.2,W,1,09,0.9,12.0,M,,M,,'), 'hemisphere'),
     ],
 )

@@ -9,10 +9,11 @@ from click.testing import CliRunner
 from trawl_ros.core.time import SECOND
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import build_model
+from trawl_ros.plots.records import Quantities
 from trawl_ros.records.samples import VelocitySample, WinchSample
 from trawl_ros.solver.equilibrium import steady_state
 from trawl_ros.view.model_source import ModelFollower
-from trawl_ros.view.records import Note, Quantities
+from trawl_ros.view.records import Note
 
 LEG_S = 400
 

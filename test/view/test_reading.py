@@ -11,11 +11,12 @@ from trawl_ros.messages.diagnostics import OK, Status, diagnostic_array
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.truth_to_messages import truth_messages
+from trawl_ros.plots.records import Quantities
 from trawl_ros.records.samples import FixSample, HeadingSample
 from trawl_ros.view.reading import TOPICS, TowReader
-from trawl_ros.view.records import Coefficients, Fix, Gear, Note, Quantities, ShipPose, Sweep
+from trawl_ros.view.records import Coefficients, Fix, Gear, Note, ShipPose, Sweep
 from trawl_ros.view.series import Unwrapped
-from trawl_ros.view.track import MOST_POINTS, Track
+from trawl_ros.view.ship import MOST_POINTS, Track
 
 
 @pytest.fixture

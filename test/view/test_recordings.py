@@ -9,6 +9,7 @@ pytest.importorskip('rerun', reason='needs the extra `view`: make test-view inst
 from trawl_ros.cli.main import trawl
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.markers import RAMP
+from trawl_ros.plots import bag_messages
 from trawl_ros.view import bags
 
 
@@ -138,7 +139,7 @@ def test_readings_alone_draw_the_gear_and_say_so(readings, read_back, tmp_path):
 
 
 def test_many_messages_are_thinned_out_and_that_is_told(tow, read_back, tmp_path, monkeypatch):
-    monkeypatch.setattr(bags, 'MOST_MESSAGES', 50)
+    monkeypatch.setattr(bag_messages, 'MOST_MESSAGES', 50)
     monkeypatch.setattr(bags, 'MOST_PICTURES', 10)
     done = run(tow, '--out', tmp_path / 'tow.rrd')
     assert done.exit_code == 0, done.output

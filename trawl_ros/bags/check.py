@@ -13,10 +13,11 @@ from statistics import median
 import numpy as np
 from rosbags.interfaces import Qos, QosDurability, QosReliability
 
-from trawl_ros.bags.check_records import BagCheck, Finding, TopicCheck
 from trawl_ros.bags.header_stamps import StampReader, stamp_reader
-from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.bags.topic_content import TopicContent
+from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.sources import BagFacts
+from trawl_ros.bags.storage.stored import RawMessage
+from trawl_ros.bags.topic_content import Finding, TopicContent
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.stamps import judge_stamps
 from trawl_ros.core.time import SECOND
@@ -50,6 +51,49 @@ instruments of its kind are silent at sea."""
 LAG_BOUND_S = 5.0
 """A difference between log time and header stamp that is a finding: acoustic links take up to a
 few seconds, a clock that is off takes more. A sweep of the sonar may take its time on top."""
+
+
+@dataclass(frozen=True)
+class TopicCheck:
+    """Check of one topic of a bag.
+
+    ``group`` is '' for a topic of somebody else. Rates are in Hz, log times in ns; ``lag_s`` is
+    the least and greatest log time after the header's stamp. What cannot be told is None.
+    """
+
+    topic: str
+    type: str
+    group: str
+    count: int
+    bytes: int
+    rate: float | None
+    usual_rate: float | None
+    longest_gap_s: float | None
+    gap_start: int | None
+    backward: int
+    duplicates: int
+    lag_s: tuple[float, float] | None
+    qos: str
+
+
+@dataclass(frozen=True)
+class BagCheck:
+    """Check of a bag."""
+
+    path: Path
+    facts: BagFacts
+    count: int
+    start: int | None
+    end: int | None
+    damaged_chunks: int
+    topics: tuple[TopicCheck, ...]
+    missing: dict[str, tuple[str, ...]]
+    findings: tuple[Finding, ...]
+
+    @property
+    def sound(self) -> bool:
+        """True without any finding."""
+        return not self.findings
 
 
 def check_bag(

@@ -1,15 +1,22 @@
 """CSV export of bags: one file per topic, for spreadsheets and data frames."""
 
+import csv
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
-from trawl_ros.bags.csv_output import CsvOutput
-from trawl_ros.bags.field_units import field_unit
-from trawl_ros.bags.flattening import FlatColumn, FlatLayout, as_seconds, as_text, singles, varies
+from trawl_ros.bags.flattening import (
+    FlatColumn,
+    FlatLayout,
+    as_seconds,
+    as_text,
+    field_unit,
+    singles,
+    varies,
+)
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.files import new_folder, written_folder
@@ -24,6 +31,9 @@ DICTIONARY = 'columns.csv'
 """The file that says what the columns of the others are."""
 
 LOG_COLUMNS = ('log_time_s', 'log_time_ns')
+
+_FORMULA = ('=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠')  # wide ones
+_NUMBER = re.compile(r'[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf|nan)', re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -226,3 +236,33 @@ def _write_dictionary(bag: Bag, folder: Path, tables: Mapping[str, _Table], name
             for entry in table.columns:
                 unit = field_unit(contract, type_name, entry.path)
                 writer.row([table.file_name, entry.name, unit, topic, type_name])
+
+
+class CsvOutput:
+    """CSV writer of rows: comma, lines that end with LF.
+
+    Parameters
+    ----------
+    stream
+        Opened with ``newline=''``.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        # Before Python 3.13 a CR in a cell is quoted only where it is part of the line's end.
+        self._writer = csv.writer(self, lineterminator='\r\n')
+
+    def row(self, cells: Iterable[str]) -> None:
+        """Write one row; no spreadsheet takes its text for a formula."""
+        self._writer.writerow([_harmless(cell) for cell in cells])
+
+    def write(self, line: str) -> None:
+        """Write a line from the module `csv`."""
+        self._stream.write(f'{line[:-2]}\n')
+
+
+def _harmless(cell: str) -> str:
+    """Put an apostrophe before text that begins like a formula; numbers stay as they are."""
+    if cell.startswith(_FORMULA) and not _NUMBER.fullmatch(cell):
+        return f"'{cell}"
+    return cell

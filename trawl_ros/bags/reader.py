@@ -4,7 +4,7 @@ What is readable is used; what is wrong with the rest is said in `Bag.problems`.
 """
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,37 +15,56 @@ from rosbags.typesys.store import Typestore
 from trawl_ros.bags.sources import BagFacts, open_source
 from trawl_ros.bags.storage.decoding import BagTypes, Decoder
 from trawl_ros.bags.storage.qos import parse_profiles
-from trawl_ros.bags.storage.stored import Definition, Stored
-from trawl_ros.bags.summary import BagSummary, count_topics
+from trawl_ros.bags.storage.stored import Definition, RawMessage
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.foreign import reading
+from trawl_ros.core.time import SECOND
 from trawl_ros.records.topics import NAMESPACE, find_topic
 
 
 @dataclass(frozen=True)
-class RawMessage:
-    """Raw message of a bag: full topic name, type, times in ns, CDR bytes, channel, and number of
-    arrival (0 where it is not known).
-    """
-
-    topic: str
-    type: str
-    log_time: int
-    publish_time: int
-    data: bytes
-    channel: int = 0
-    sequence: int = 0
-
-
-@dataclass(frozen=True)
 class Received:
-    """Decoded message: full topic name, type, log time (ns), the message, and its channel."""
+    """Decoded message: full topic name, type, log time (ns), the message, its channel, and its
+    number of arrival (0 where it is not known).
+    """
 
     topic: str
     type: str
     log_time: int
     message: Any
     channel: int = 0
+    sequence: int = 0
+
+
+@dataclass(frozen=True)
+class TopicSummary:
+    """Summary of a topic: number, type and bytes of its messages, first and last time (ns)."""
+
+    topic: str
+    type: str
+    count: int
+    bytes: int
+    start: int
+    end: int
+
+    @property
+    def rate(self) -> float | None:
+        """Mean rate, Hz; None where it is undefined."""
+        span = self.end - self.start
+        return (self.count - 1) * SECOND / span if span > 0 else None
+
+
+@dataclass(frozen=True)
+class BagSummary:
+    """Summary of a bag; ``start`` and ``end`` are log times in ns, None without messages."""
+
+    path: Path
+    topics: tuple[TopicSummary, ...]
+    count: int
+    start: int | None
+    end: int | None
+    facts: BagFacts
+    problems: tuple[str, ...]
 
 
 class Bag:
@@ -98,7 +117,6 @@ class Bag:
         self._definitions = self._source.definitions
         self.topics = {topic: definition.type for topic, definition in self._definitions.items()}
         self.custom_data = self._source.custom_data
-        self._counted = all(file.counts_arrivals for file in self._source.files)
         self._types = BagTypes()
         self._decoders_made: dict[str, Decoder] = {}
 
@@ -148,15 +166,11 @@ class Bag:
             If a topic of the project has another type than it should, or there is not one
             readable message in the whole bag.
         """
-        return map(self._raw, self._wanted(topics))
-
-    def _wanted(self, topics: Collection[str] | None) -> Iterator[Stored]:
-        """Give the messages of `raw` as their files have them."""
         self._check_types(topics)
         empty = True
-        for stored in self._stored():
+        for stored in self.as_stored():
             empty = False
-            if topics is None or stored[0] in topics:
+            if topics is None or stored.topic in topics:
                 yield stored
         if empty:
             known = f' ({"; ".join(self.problems)})' if self.problems else ''
@@ -164,10 +178,6 @@ class Bag:
 
     def as_stored(self) -> Iterator[RawMessage]:
         """Give all messages undecoded and unchecked, whatever their types; there may be none."""
-        return map(self._raw, self._stored())
-
-    def _stored(self) -> Iterator[Stored]:
-        """Give the messages of `as_stored` as their files have them."""
         read = 0
         with reading(self.path, BagError, lambda: f'after {read} messages'):
             for stored in self._source.messages():
@@ -192,34 +202,15 @@ class Bag:
         BagError
             As `raw`, and if the definition of one of the project's topics is not understood.
         """
-        for stored, message in self._decoded(self._decoders(topics, self._types.decoder)):
-            there = stored.message
-            yield Received(stored.topic, stored.type, there.log_time, message, there.channel_id)
-
-    def passing(self, topics: Collection[str]) -> Iterator[tuple[str, int, int, Any]]:
-        """Give full topic name, channel, number of arrival (0 where it is not known) and decoded
-        message, as `messages`, for those in a hurry.
-
-        A message may be filled anew with the content of the next: nobody may keep one.
-
-        Raises
-        ------
-        BagError
-            As `messages`.
-        """
-        for stored, message in self._decoded(self._decoders(topics, self._types.refilling)):
-            there = stored.message
-            yield stored.topic, there.channel_id, self._counted * there.sequence, message
-
-    def _decoded(self, decoders: Mapping[str, Decoder]) -> Iterator[tuple[Stored, Any]]:
+        decoders = self._decoders(topics)
         failed: Counter[str] = Counter()
-        for stored in self._wanted(decoders):
+        for raw in self.raw(decoders):
             try:
-                message = decoders[stored[0]](stored[2].data)
+                message = decoders[raw.topic](raw.data)
             except MessageError:
-                failed[stored.topic] += 1
+                failed[raw.topic] += 1
                 continue
-            yield stored, message
+            yield Received(raw.topic, raw.type, raw.log_time, message, raw.channel, raw.sequence)
         for topic, count in failed.items():
             self._report(
                 f'{self.path}: {count} messages on {topic} are not a {self.topics[topic]} '
@@ -254,7 +245,7 @@ class Bag:
 
     def summary(self) -> BagSummary:
         """Count all messages by reading through the whole bag."""
-        topics = count_topics(
+        topics = _count_topics(
             (message.topic, message.type, message.log_time, len(message.data))
             for message in self.as_stored()
         )
@@ -270,15 +261,13 @@ class Bag:
             problems=tuple(self.problems),
         )
 
-    def _decoders(
-        self, topics: Collection[str] | None, made: Callable[[str, Definition], Decoder]
-    ) -> dict[str, Decoder]:
+    def _decoders(self, topics: Collection[str] | None) -> dict[str, Decoder]:
         decoders = {}
         for topic, definition in self.definitions().items():
             if topics is not None and topic not in topics:
                 continue
             try:
-                decoders[topic] = made(topic, definition)
+                decoders[topic] = self._types.decoder(topic, definition)
             except BagError as reason:
                 sentence = f'{self.path}: {reason}'
                 if find_topic(topic, self._namespace) and not self._lenient:
@@ -297,12 +286,6 @@ class Bag:
                 if not self._lenient:
                     raise BagError(sentence)
                 self._report(sentence)
-
-    def _raw(self, stored: Stored) -> RawMessage:
-        topic, type_name, there = stored
-        times = there.log_time, there.publish_time
-        number = self._counted * there.sequence
-        return RawMessage(topic, type_name, *times, there.data, there.channel_id, number)
 
     def _report(self, problem: str) -> None:
         if problem not in self.problems:
@@ -352,3 +335,15 @@ def read_messages(
 def summarise(path: str | Path, *, lenient: bool = False) -> BagSummary:
     """Summarise the content of a bag; see `Bag.summary`."""
     return Bag(path, lenient=lenient).summary()
+
+
+def _count_topics(messages: Iterable[tuple[str, str, int, int]]) -> tuple[TopicSummary, ...]:
+    """Count messages, each given as topic, type, log time (ns) and size (bytes)."""
+    summaries: dict[tuple[str, str], TopicSummary] = {}
+    for topic, type_name, time, size in messages:
+        key = topic, type_name
+        past = summaries.get(key) or TopicSummary(*key, 0, 0, time, time)
+        summaries[key] = TopicSummary(
+            *key, past.count + 1, past.bytes + size, min(past.start, time), max(past.end, time)
+        )
+    return tuple(summaries[key] for key in sorted(summaries))

@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from trawl_ros.bags.sources import check_topics
-from trawl_ros.bags.storage.allowance import Allowance
+from trawl_ros.bags.storage.chunks import Allowance
 from trawl_ros.bags.storage.decoding import BagTypes, Decoder
 from trawl_ros.bags.storage.mcap_file import McapFile
 from trawl_ros.bags.storage.metadata import FILE_NAME, BagMetadata, load_metadata
 from trawl_ros.bags.storage.metadata_faults import metadata_faults
-from trawl_ros.bags.storage.packed_messages import PackedMessages
-from trawl_ros.bags.storage.stored import Definition, Stored
+from trawl_ros.bags.storage.packed import PackedMessages
+from trawl_ros.bags.storage.stored import Definition, RawMessage
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.files import new_folder, written_folder
@@ -111,13 +111,8 @@ def repair_bag(
                 begun = True
                 if not bag.declared(stored.topic):
                     bag.declare(stored.topic, definition)
-                message = stored.message
                 bag.write(
-                    stored.topic,
-                    stored.type,
-                    message.data,
-                    message.log_time,
-                    message.publish_time,
+                    stored.topic, stored.type, stored.data, stored.log_time, stored.publish_time
                 )
         if bag is None:
             raise BagError(
@@ -171,7 +166,7 @@ class _Damaged:
         for file in self.files:
             for _, stored in self.messages(file):
                 self.read[stored.topic] += 1
-                time = stored.message.log_time
+                time = stored.log_time
                 times = [min(times[0], time), max(times[1], time)] if times else [time, time]
         span = (times[0], times[1]) if times else None
         for fault in metadata_faults(self.path, self._metadata, ('mcap',), self.read, span):
@@ -180,7 +175,7 @@ class _Damaged:
 
     def messages(
         self, file: McapFile, on_progress: OnProgress = ignore
-    ) -> Iterator[tuple[Definition, Stored]]:
+    ) -> Iterator[tuple[Definition, RawMessage]]:
         """Yield the readable messages of a file, each with the definition of its topic."""
         definitions = file.definitions
         stated = self._metadata.offered() if self._metadata else {}
@@ -190,7 +185,7 @@ class _Damaged:
         unusable = self._unusable[file.path] = Counter[str]()
         allowed = Allowance(file.path, file.path.stat().st_size)
         for stored in packed.unpack(file.messages(), allowed):
-            topic, time = stored.topic, stored.message.log_time
+            topic, time = stored.topic, stored.log_time
             definition = self._types.setdefault(topic, definitions[topic])
             if not stored.type or stored.type != definition.type:
                 left_out[topic] += 1
@@ -216,17 +211,17 @@ class _Damaged:
                 'the rest, and were left out'
             )
 
-    def _decodes(self, stored: Stored, definition: Definition) -> bool:
+    def _decodes(self, stored: RawMessage, definition: Definition) -> bool:
         """True unless a message is none of its type; a type that is not understood passes."""
         topic = stored.topic
         if topic not in self._decoders:
             try:
-                self._decoders[topic] = self._bag_types.refilling(topic, definition)
+                self._decoders[topic] = self._bag_types.decoder(topic, definition)
             except BagError:
                 self._decoders[topic] = None
         decode = self._decoders[topic]
         try:
-            return decode is None or decode(stored.message.data) is not None
+            return decode is None or decode(stored.data) is not None
         except MessageError:
             return False
 

@@ -65,18 +65,18 @@ class SampleStream:
             raise BagError(f'{"; ".join(wrong)}; expected the time of each reading')
         self.problems += wrong
         first, last = judged.span or (0, 0)
-        for topic, channel, number, message in bag.passing(names):
-            name = names[topic]
+        for received in bag.messages(names):
+            name = names[received.topic]
             try:
-                sample = to_sample(name, message)
+                sample = to_sample(name, received.message)
             except MessageError as reason:
                 refused[name] += 1
                 reasons.setdefault(name, str(reason))
                 continue
             if not first <= sample.stamp <= last:
                 continue
-            if doubt := watches[name].take(channel, sample, number):
-                raise BagError(f'{path}: {topic} {doubt.text}')
+            if doubt := watches[name].take(received.channel, sample, received.sequence):
+                raise BagError(f'{path}: {received.topic} {doubt.text}')
             yield sample
         self.problems += bag.problems
         for name, count in refused.items():

@@ -6,14 +6,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
-from trawl_ros.bags.storage.allowance import Allowance
+from trawl_ros.bags.storage.chunks import Allowance
 from trawl_ros.bags.storage.database import Database
 from trawl_ros.bags.storage.mcap_file import McapFile
 from trawl_ros.bags.storage.metadata import FILE_NAME, BagMetadata, load_metadata
 from trawl_ros.bags.storage.metadata_faults import metadata_faults
-from trawl_ros.bags.storage.packed_messages import PackedMessages
-from trawl_ros.bags.storage.stored import Definition, StatedTopics, Stored
-from trawl_ros.bags.unpacked import Unpacked
+from trawl_ros.bags.storage.packed import PackedMessages, Unpacked
+from trawl_ros.bags.storage.stored import Definition, RawMessage
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import BAG_FILES, BAG_TOPICS, NAME
@@ -40,10 +39,6 @@ class StorageFile(Protocol):
         """Number of damaged chunks so far."""
 
     @property
-    def counts_arrivals(self) -> bool:
-        """True if the numbers of its messages, by topic, are the order in which they came."""
-
-    @property
     def definitions(self) -> dict[str, Definition]:
         """Definition of each topic's messages."""
 
@@ -53,7 +48,7 @@ class StorageFile(Protocol):
     def counts(self) -> dict[tuple[str, str], int] | None:
         """Give the number of messages by (topic, type); None if the file does not say."""
 
-    def messages(self) -> Iterator[Stored]:
+    def messages(self) -> Iterator[RawMessage]:
         """Give all messages in the order of their log times."""
 
 
@@ -145,7 +140,7 @@ class BagSource:
         """Give all (topic, type) there are."""
         return set[tuple[str, str]]().union(*(file.types() for file in self.files))
 
-    def messages(self) -> Iterator[Stored]:
+    def messages(self) -> Iterator[RawMessage]:
         """Give all messages in the order of their log times."""
         streams = [file.messages() for file in self.files]
         size = sum(path.stat().st_size for path in self._paths)
@@ -153,7 +148,7 @@ class BagSource:
         if len(streams) == 1:
             merged = streams[0]
         else:
-            merged = heapq.merge(*streams, key=lambda stored: stored.message.log_time)
+            merged = heapq.merge(*streams, key=lambda stored: stored.log_time)
         self._packed = PackedMessages()
         yield from self._packed.unpack(merged, allowed)
         self._packed.report(self.files[0].path, self._report)
@@ -303,6 +298,6 @@ def _mode(metadata: BagMetadata | None) -> str:
 
 
 def _open_file(
-    path: Path, report: Report, stated: Callable[[], StatedTopics] | None = None
+    path: Path, report: Report, stated: Callable[[], Mapping[str, Definition]] | None = None
 ) -> StorageFile:
     return Database(path, report) if path.suffix == '.db3' else McapFile(path, report, stated)

@@ -2,10 +2,11 @@
 
 import math
 from collections import Counter
+from dataclasses import dataclass
 
-from trawl_ros.bags.check_records import Finding
 from trawl_ros.bags.one_source import Doubt, SourceWatch
-from trawl_ros.bags.reader import Bag, RawMessage
+from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.storage.stored import RawMessage
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.foreign import one_line
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
@@ -20,6 +21,15 @@ ONE_IN = 25
 
 REASON_CHARACTERS = 200
 """Longest reason that is repeated."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Finding: a word for scripts, the topic ('' for the bag), and a sentence."""
+
+    kind: str
+    topic: str
+    text: str
 
 
 class TopicContent:

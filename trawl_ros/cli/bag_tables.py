@@ -10,11 +10,9 @@ from rich.console import Console
 from rich.filesize import decimal
 from rich.markup import escape
 
-from trawl_ros.bags.check import GROUPS, describe_qos
-from trawl_ros.bags.check_records import BagCheck
-from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.check import GROUPS, BagCheck, describe_qos
+from trawl_ros.bags.reader import Bag, BagSummary
 from trawl_ros.bags.sources import BagFacts
-from trawl_ros.bags.summary import BagSummary
 from trawl_ros.cli.tables import figure, plain_table
 from trawl_ros.core.time import SECOND
 

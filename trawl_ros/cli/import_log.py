@@ -5,10 +5,7 @@ from pathlib import Path
 import click
 
 from trawl_ros.bags.logs.import_log import import_log
-from trawl_ros.bags.logs.nmea import import_nmea
-from trawl_ros.bags.logs.nmea_mapping import is_nmea
 from trawl_ros.cli.options import BAG
-from trawl_ros.core.resources import packaged
 
 
 @click.command('import-log')
@@ -31,10 +28,8 @@ def command(log: Path, mapping: Path, out: Path, leave_out: bool) -> None:
     LOG is a table (CSV and its relatives) or a file of NMEA 0183 sentences; the mapping says
     which, and which column or sentence becomes which topic.
     """
-    file = packaged(mapping, 'logs')
-    turn = import_nmea if is_nmea(file) else import_log
-    done = turn(log, file, out, leave_out=leave_out)
-    rows = 'lines' if turn is import_nmea else 'rows'
+    done = import_log(log, mapping, out, leave_out=leave_out)
+    rows = 'lines' if done.of_sentences else 'rows'
     click.echo(f'{out}: {sum(done.counts.values())} messages from {done.rows} {rows}')
     for topic, count in done.counts.items():
         click.echo(f'{count:8d}  {topic}')

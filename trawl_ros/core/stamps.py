@@ -23,6 +23,9 @@ MessageT = TypeVar('MessageT')
 
 DAY_NS = 86_400 * SECOND
 
+END_NS = 2**31 * SECOND
+"""Stamps (ns) end here: messages count seconds in 32 bits."""
+
 SIMULATED_UNTIL = 365 * DAY_NS
 """Stamps (ns) below this may be of a simulation, which counts from zero."""
 

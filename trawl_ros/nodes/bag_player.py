@@ -6,7 +6,8 @@ from typing import Any, ClassVar
 
 from rclpy.qos import HistoryPolicy
 
-from trawl_ros.bags.reader import Bag, RawMessage
+from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.storage.stored import RawMessage
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.stamps import FAR_NS, lasting, when
 from trawl_ros.core.time import SECOND

@@ -32,10 +32,8 @@ from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.sentences.assembly import SampleAssembly
 from trawl_ros.sentences.codec import SentenceReader, Spoken
 from trawl_ros.sentences.framing import Foreign, Frame, Unreadable, parse_line
-from trawl_ros.sentences.link_clock import LinkClock
+from trawl_ros.sentences.links import LinkClock, Source, Tally, Tellers
 from trawl_ros.sentences.table import COMMANDS, load_tables
-from trawl_ros.sentences.tally import Tally
-from trawl_ros.sentences.tellers import Tellers
 
 DRAIN_S = 0.05
 LINES_AT_ONCE = 500
@@ -90,6 +88,7 @@ class NmeaIn(TrawlNode):
         water = WaterColumn(density_kg_m3=given['water_density_kg_m3'])
         tables = load_tables(given['systems'])
         self._reader = SentenceReader(tables)
+        self._ranks = {key: rank for rank, key in enumerate(self._reader.rows)}
         self._assembly = SampleAssembly(tables, water)
         self._tellers = Tellers()
         self._tally = Tally()
@@ -200,13 +199,16 @@ class NmeaIn(TrawlNode):
             self._tally.understood += 1
             return
         via = f'{link} from {sender}' if sender else link
-        if rival := self._tellers.rival(spoken, via, row.form, time.monotonic_ns()):
+        rank = self._ranks[spoken.system, spoken.name]
+        source = Source(via, spoken.system, spoken.talker, row.form, rank)
+        spoken, rival = self._tellers.believed(spoken, source, time.monotonic_ns())
+        if rival and not spoken.readings:
             raise Unreadable(
                 f'a reading of {row.topics[0]} by {via}, which another source tells: {rival}'
             )
         if any(topic in COMMANDS for topic in row.topics):
             self._command(spoken)
-        else:
+        elif spoken.readings:
             stamp = self._stamp(frame, spoken, link)
             self._publish(self._assembly.take(spoken, stamp, link))
         self._tally.understood += 1

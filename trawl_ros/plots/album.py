@@ -16,12 +16,11 @@ from trawl_ros.model.water import build_water
 from trawl_ros.plots import film
 from trawl_ros.plots.gear import gear_figure
 from trawl_ros.plots.histories import history_figure, left_out
-from trawl_ros.plots.moments import GEAR, IMAGE, MOUTH, Moment, read_moments
+from trawl_ros.plots.moments import GEAR, IMAGE, MOUTH, Moment, read_moments, read_sweeps
 from trawl_ros.plots.reading import read_history
 from trawl_ros.plots.records import SonarPicture, TowHistory
 from trawl_ros.plots.shapes import gear_shape
 from trawl_ros.plots.sonar import sonar_figure
-from trawl_ros.plots.sweeps import read_sweeps
 from trawl_ros.plots.track import track_figure
 from trawl_ros.records.topics import NAMESPACE
 from trawl_ros.report.pictures import Drawing, Picture, by_section, draw

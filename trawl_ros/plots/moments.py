@@ -1,22 +1,35 @@
-"""Moments of a bag: the messages nearest to chosen times."""
+"""Moments of a bag: the messages nearest to chosen times, and the sonar's sweeps among them."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from trawl_ros.bags.reader import Bag, RawMessage
+from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.storage.stored import RawMessage
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import MessageError
 from trawl_ros.core.time import SECOND
-from trawl_ros.plots.records import TowHistory
+from trawl_ros.messages.from_messages import to_sample
+from trawl_ros.messages.point_clouds import read_point_cloud
+from trawl_ros.plots.records import SonarPicture, TowHistory
+from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 from trawl_ros.records.topics import absolute
 
 GEAR, MOUTH, POSE = 'truth/gear', 'truth/net/mouth', 'truth/sonar/pose'
 SECTION, IMAGE, SCAN = 'truth/sonar/section', 'sonar/image', 'sonar/scan'
 MOST_AWAY_S = {GEAR: 10.0, MOUTH: 10.0, POSE: 10.0, SECTION: 10.0, IMAGE: 120.0, SCAN: 120.0}
 """Largest distance from a chosen time at which a message is drawn for it."""
+
+
+Sweep = tuple[SonarImageSample, SonarScanSample]
+
+READING_AWAY_S = 60.0
+"""A reading of the opening belongs to a sweep that is not further away."""
 
 
 @dataclass(frozen=True)
@@ -69,3 +82,90 @@ def corners(moment: Moment) -> FloatArray:
     """Corners (2 N, 3) of the mouth in ``map``: headrope from port, footrope back."""
     points = moment.messages[MOUTH].polygon.points
     return np.array([[point.x, point.y, point.z] for point in points], dtype=float)
+
+
+def read_sweeps(
+    path: Path, tow: TowHistory, times: Sequence[float], namespace: str
+) -> tuple[list[SonarPicture | None], list[str]]:
+    """Find the sweep that came in nearest to each of the times (s, rising).
+
+    Returns
+    -------
+    list
+        A picture per time; None where no sweep is near, or nobody knows where its beams look.
+    list
+        A sentence for each sweep of the latter kind.
+    """
+    sweeps: list[Sweep | None] = []
+    problems: list[str] = []
+    for moment in read_moments(path, tow, times, namespace, [IMAGE, SCAN]):
+        try:
+            sweeps.append(sweep_of(moment, tow))
+        except MessageError as reason:
+            sweeps.append(None)
+            problems.append(str(reason))
+    if not any(sweeps):
+        return [None for _ in times], problems
+    # Truth from the middle of the sweep, so that neither its first nor its last beams are far off.
+    middles = [
+        time if sweep is None else tow.time(sweep[0].stamp) + 0.5 * sweep[1].sweep_s
+        for time, sweep in zip(times, sweeps, strict=True)
+    ]
+    order = np.argsort(middles, kind='stable')
+    there = read_moments(path, tow, [middles[k] for k in order], namespace, [SECTION, MOUTH, POSE])
+    pictures: list[SonarPicture | None] = [None for _ in times]
+    for k, moment in zip(order, there, strict=True):
+        sweep = sweeps[k]
+        if sweep is not None:
+            pictures[k] = _picture(sweep, moment, tow)
+    return pictures, problems
+
+
+def sweep_of(moment: Moment, tow: TowHistory) -> Sweep | None:
+    """Image with the scan that belongs to it; None without an image.
+
+    Raises
+    ------
+    MessageError
+        If no scan says at which angles the image's beams look.
+    """
+    if IMAGE not in moment.messages:
+        return None
+    image = to_sample(IMAGE, moment.messages[IMAGE])
+    assert isinstance(image, SonarImageSample)
+    scan = to_sample(SCAN, moment.messages[SCAN]) if SCAN in moment.messages else None
+    if (
+        not isinstance(scan, SonarScanSample)
+        or scan.stamp != image.stamp
+        or len(scan.ranges) != len(image.image)
+    ):
+        raise MessageError(
+            f'{IMAGE}: the sweep of {tow.time(image.stamp):.1f} s has no {SCAN} of the same stamp '
+            'and number of beams, which would say at which angles they look'
+        )
+    return image, scan
+
+
+def _picture(sweep: Sweep, moment: Moment, tow: TowHistory) -> SonarPicture:
+    image, scan = sweep
+    time = tow.time(image.stamp)
+    height, width = (
+        tow.measured[name].near(time, READING_AWAY_S) if name in tow.measured else math.nan
+        for name in ('opening_height', 'opening_width')
+    )
+    mouth, closed = _mouth(moment)
+    return SonarPicture(time, image, scan, height, width, mouth, closed)
+
+
+def _mouth(moment: Moment) -> tuple[FloatArray, bool]:
+    """Truth in the sonar's plane (n, 2): its section, or the ropes turned into it."""
+    if SECTION in moment.messages:
+        through = read_point_cloud(SECTION, moment.messages[SECTION], ('x', 'y'))
+        if len(through):
+            return through, False
+    if MOUTH in moment.messages and POSE in moment.messages:
+        pose = moment.messages[POSE].pose
+        turn, place = pose.orientation, pose.position
+        axes = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w]).as_matrix()
+        return (corners(moment) - [place.x, place.y, place.z]) @ axes[:, :2], True
+    return np.zeros((0, 2)), False

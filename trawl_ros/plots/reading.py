@@ -1,14 +1,12 @@
 """Series over time from a bag: truth and readings."""
 
-from collections import Counter
+from array import array
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from trawl_ros.bags.reader import Bag, RawMessage
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.time import SECOND
@@ -16,13 +14,10 @@ from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.rotations import about_z, to_angles
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_from_messages import winch_truth
-from trawl_ros.plots.records import Series, TowHistory
+from trawl_ros.plots.bag_messages import BagMessages, TowMessage
+from trawl_ros.plots.records import Kind, Quantities, Series, TowHistory
 from trawl_ros.records.samples import INSTRUMENTS, SENSORS, Sample
-from trawl_ros.records.topics import absolute
 from trawl_ros.records.truth import SIDES
-
-MOST_POINTS = 20_000
-"""Of one topic: where there are more, every other one is left out until there are not."""
 
 NOT_DRAWN = ('sonar/bottom', 'vessel/echo_sounder/depth', 'vessel/echo_sounder/school')
 """Topics with numbers that no figure of a tow shows."""
@@ -117,29 +112,42 @@ def sample_columns(sample: Sample, depth_at: Callable[[float], float]) -> Column
     return columns
 
 
-@dataclass
-class _Rows:
-    """Rows of one topic, at most `MOST_POINTS` of them."""
+class QuantityReader:
+    """Reader of quantities from messages of truth and instruments, for pictures and the view.
 
-    stride: int = 1
-    seen: int = 0
-    stamps: list[int] = field(default_factory=list)
-    lags: list[int] = field(default_factory=list)
-    columns: list[Columns] = field(default_factory=list)
+    Parameters
+    ----------
+    depth_at
+        Depth (m) at an absolute pressure (Pa).
+    """
 
-    def due(self) -> bool:
-        """Count a message; return True if it is to be taken."""
-        self.seen += 1
-        return (self.seen - 1) % self.stride == 0
+    def __init__(self, depth_at: Callable[[float], float]) -> None:
+        self._depth_at = depth_at
+        self._doors: dict[str, tuple[int, FloatArray]] = {}
 
-    def add(self, stamp: int, lag: int, columns: Columns) -> None:
-        self.stamps.append(stamp)
-        self.lags.append(lag)
-        self.columns.append(columns)
-        if len(self.stamps) > MOST_POINTS:
-            self.stride *= 2
-            for rows in (self.stamps, self.lags, self.columns):
-                del rows[1::2]
+    def sample(self, sample: Sample) -> Quantities:
+        """Give the quantities of a sample; it may have none."""
+        return Quantities(sample.stamp, 'measured', sample_columns(sample, self._depth_at))
+
+    def truth(self, topic: str, message: Any) -> Quantities:
+        """Give the quantities of a message of one of `TRUTH`.
+
+        The distance of the doors comes with the second of two messages of the same stamp.
+
+        Raises
+        ------
+        MessageError
+            If it contradicts its topic.
+        """
+        stamp, columns = stamp_of(message), TRUTH[topic](topic, message)
+        if topic.startswith('truth/door/'):
+            side = topic.split('/')[2]
+            place = np.array([columns[f'{side}_{axis}'] for axis in 'xyz'])
+            self._doors[side] = stamp, place
+            places = [place for at, place in self._doors.values() if at == stamp]
+            if len(places) == len(SIDES):
+                columns['door_spread'] = float(np.linalg.norm(places[0] - places[1]))
+        return Quantities(stamp, 'truth', columns)
 
 
 def read_history(path: Path, depth_at: Callable[[float], float], namespace: str) -> TowHistory:
@@ -159,72 +167,45 @@ def read_history(path: Path, depth_at: Callable[[float], float], namespace: str)
     BagError
         If there is no such bag, or nothing in it that could be drawn.
     """
-    bag = Bag(path, namespace=namespace)
-    rows = {topic: _Rows() for topic in (*TRUTH, *MEASURED)}
-    refused: Counter[str] = Counter()
-    reasons: dict[str, str] = {}
-    names = {absolute(topic, namespace): topic for topic in rows}
-    for raw in bag.raw(names):
-        topic = names[raw.topic]
-        if rows[topic].due():
-            try:
-                _take(rows[topic], topic, raw, bag, depth_at)
-            except MessageError as reason:
-                refused[topic] += 1
-                reasons.setdefault(topic, str(reason))
-    if not any(table.stamps for table in rows.values()):
-        raise BagError(
-            f'{path}: holds none of the topics that can be drawn; expected {namespace}/'
-            f'winch/joint_states, {namespace}/truth/winch or others of the project'
-        )
-    problems = [
-        *bag.problems,
-        *(
-            f'{count} messages were left out, the first because {reasons[topic]}'
-            for topic, count in refused.items()
-        ),
-        *(
-            f'{topic}: every {table.stride}th of {table.seen} messages is drawn'
-            for topic, table in rows.items()
-            if table.stride > 1 and topic in MEASURED
-        ),
-    ]
-    stamps = [stamp for table in rows.values() for stamp in table.stamps]
+    bags = BagMessages([path], namespace, topics=(*TRUTH, *MEASURED), fewer={})
+    reader = QuantityReader(depth_at)
+    rows: dict[Kind, dict[str, list[tuple[int, float]]]] = {'truth': {}, 'measured': {}}
+    stamps, lags = array('q'), array('q')
+
+    def take(given: TowMessage) -> None:
+        if given.topic in TRUTH:
+            read = reader.truth(given.topic, given.message)
+        else:
+            read = reader.sample(to_sample(given.topic, given.message))
+        stamps.append(read.stamp)
+        lags.append(given.log_time - read.stamp)
+        for name, value in read.values.items():
+            rows[read.kind].setdefault(name, []).append((read.stamp, value))
+
+    bags.read(take)
+    if not stamps:
+        raise BagError(f'{path}: no message that can be drawn ({"; ".join(bags.problems)})')
     start, end = min(stamps), max(stamps)
     return TowHistory(
         name=path.stem,
         start=start,
         duration_s=(end - start) / SECOND,
-        truth=_completed(_series(rows, tuple(TRUTH), start)),
-        measured=_series(rows, MEASURED, start),
-        log_lag=round(float(np.median([lag for table in rows.values() for lag in table.lags]))),
-        problems=tuple(problems),
+        truth=_completed(_series(rows['truth'], start)),
+        measured=_series(rows['measured'], start),
+        log_lag=round(float(np.median(lags))),
+        # Truth comes so often that nobody misses some of it.
+        problems=tuple(text for text in bags.problems if not text.startswith('truth/')),
     )
 
 
-def _take(
-    rows: _Rows, topic: str, raw: RawMessage, bag: Bag, depth_at: Callable[[float], float]
-) -> None:
-    message = bag.decode(raw)
-    if topic in TRUTH:
-        stamp, columns = stamp_of(message), TRUTH[topic](topic, message)
-    else:
-        sample = to_sample(topic, message)
-        stamp, columns = sample.stamp, sample_columns(sample, depth_at)
-    rows.add(stamp, raw.log_time - stamp, columns)
-
-
-def _series(rows: dict[str, _Rows], topics: tuple[str, ...], start: int) -> dict[str, Series]:
+def _series(rows: dict[str, list[tuple[int, float]]], start: int) -> dict[str, Series]:
     by_name: dict[str, Series] = {}
-    for topic in topics:
-        table = rows[topic]
-        if not table.stamps:
-            continue
-        order = np.argsort(table.stamps, kind='stable')
-        times = (np.array(table.stamps)[order] - start) / SECOND
-        for name in table.columns[0]:
-            values = np.array([columns[name] for columns in table.columns], dtype=float)[order]
-            by_name[name] = Series(times, _continuous(values) if name == 'heading' else values)
+    for name, pairs in rows.items():
+        stamps = np.array([stamp for stamp, _ in pairs], dtype=np.int64)
+        order = np.argsort(stamps, kind='stable')
+        values = np.array([value for _, value in pairs], dtype=float)[order]
+        times = (stamps[order] - start) / SECOND
+        by_name[name] = Series(times, _continuous(values) if name == 'heading' else values)
     return by_name
 
 
@@ -237,18 +218,10 @@ def _continuous(angles: FloatArray) -> FloatArray:
 
 
 def _completed(truth: dict[str, Series]) -> dict[str, Series]:
-    """Truth that says something, with the distance of the doors; where the sonar's own view of
-    the opening is not there, the height at the headrope's centre stands for it.
+    """Truth that says something; where the sonar's own view of the opening is not there, the
+    height at the headrope's centre stands for it.
     """
     known = {name: series for name, series in truth.items() if np.isfinite(series.values).any()}
-    if 'port_x' in known and 'starboard_x' in known:
-        times = known['port_x'].times
-        apart = [
-            known[f'port_{axis}'].values
-            - np.interp(times, known[f'starboard_{axis}'].times, known[f'starboard_{axis}'].values)
-            for axis in 'xyz'
-        ]
-        known['door_spread'] = Series(times, np.linalg.norm(apart, axis=0))
     if 'centre_height' in known:
         known.setdefault('opening_height', known['centre_height'])
     return known

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -11,6 +12,19 @@ from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 
 SCHOOLS = 'schools'
 """Name of what is drawn of fish."""
+
+
+Kind = Literal['truth', 'measured', 'wanted', 'model']
+"""Origin of a quantity: the simulation, an instrument, a command, or a state of the model."""
+
+
+@dataclass(frozen=True)
+class Quantities:
+    """Values of quantities by the names of `TowHistory`."""
+
+    stamp: int
+    kind: Kind
+    values: Mapping[str, float]
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,9 @@ import numpy as np
 from pydantic import Field
 
 from trawl_ros.core.compass import compass_yaw, course_velocity, speed_course
+from trawl_ros.core.quantity import Quantity, check_quantity, check_unit, in_si
 from trawl_ros.core.schema import Record
+from trawl_ros.core.units import UNITS
 from trawl_ros.records.registry import Sensor, changed, with_numbers
 from trawl_ros.records.samples import INSTRUMENTS, SENSORS, Sample
 
@@ -72,6 +74,58 @@ class Stated:
     std: float = 0.0
     min_range: float = 0.0
     max_range: float = 0.0
+
+
+class StatedTopic(Record):
+    """Noise and limits of a topic as a file states them; limits of distances only."""
+
+    std: Quantity | None = None
+    min_range: Quantity | None = None
+    max_range: Quantity | None = None
+
+    def si(self, topic: str, water: WaterColumn | None) -> Stated:
+        """Give noise and limits in SI units; a depth gauge's noise in metres becomes pressure."""
+        std = in_si(self.std)
+        in_metres = self.std is not None and UNITS[self.std.unit].quantity == 'length'
+        if water and in_metres and STD_QUANTITIES.get(topic) == 'pressure':
+            std = water.depth_to_difference(std)
+        return Stated(std, in_si(self.min_range), in_si(self.max_range))
+
+    def check(self, topic: str, *, has_water: bool = True) -> None:
+        """Refuse what does not fit a topic; noise of pressure may be in metres with a water.
+
+        Raises
+        ------
+        ValueError
+            Naming the key, what was found and what was expected.
+        """
+        where = f'topics.{topic}'
+        self._check_std(where, STD_QUANTITIES.get(topic), has_water)
+        for name, limit in (('min_range', self.min_range), ('max_range', self.max_range)):
+            if limit is None and topic in RANGE_TOPICS and name == 'max_range':
+                raise ValueError(f'{where}.{name}: missing, expected a length')
+            if limit is not None and topic not in RANGE_TOPICS:
+                raise ValueError(f'{where}.{name}: given, expected none: it measures no distance')
+            if limit is not None:
+                check_quantity(f'{where}.{name}', limit, 'length')
+        low, high = self.min_range, self.max_range
+        if low and high and low.si() >= high.si():
+            raise ValueError(
+                f'{where}.max_range: found {high.value:g} {high.unit}, '
+                f'expected more than min_range ({low.value:g} {low.unit})'
+            )
+
+    def _check_std(self, where: str, quantity: str | None, has_water: bool) -> None:
+        if self.std is None:
+            return
+        if quantity is None:
+            raise ValueError(f'{where}.std: given, expected none: its messages cannot state it')
+        if self.std.value <= 0:
+            raise ValueError(f'{where}.std.value: found {self.std.value:g}, expected more than 0')
+        # A depth gauge is specified in metres as often as in pascals.
+        in_metres = UNITS.get(self.std.unit, ('',))[0] == 'length'
+        if not (quantity == 'pressure' and has_water and in_metres):
+            check_unit(f'{where}.std.unit', self.std.unit, quantity)
 
 
 def sample_of_fields(

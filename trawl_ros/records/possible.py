@@ -1,9 +1,15 @@
 """Bounds of what instruments of a ship can report; a value beyond them is no reading."""
 
+import math
+from collections.abc import Mapping
+
 from trawl_ros.records.samples import SENSORS, Sample
 
 COMPASS_DEG = (-180.0, 360.0)
 """Loggers write compass angles from 0 to 360 or from -180 to 180."""
+
+COMPASS_SLACK_DEG = 1e-9
+"""Rounding of an angle that was converted to radians."""
 
 
 def impossible(sample: Sample) -> str | None:
@@ -19,7 +25,16 @@ def impossible(sample: Sample) -> str | None:
     return None
 
 
-def impossible_compass(degrees: float) -> str | None:
-    """Say that a compass angle (degrees) cannot be; None where it can."""
+def impossible_fields(fields: Mapping[str, float]) -> str | None:
+    """Say that a compass angle (rad) among the fields of a topic cannot be; None where all can."""
     low, high = COMPASS_DEG
-    return None if low <= degrees <= high else f'compass angle beyond {low:g} to {high:g} degrees'
+    # A sample keeps its angle within one turn, so only the field shows it.
+    for name, value in fields.items():
+        degrees = math.degrees(value)
+        if (
+            name.startswith('compass_')
+            and not math.isnan(degrees)
+            and not (low - COMPASS_SLACK_DEG <= degrees <= high + COMPASS_SLACK_DEG)
+        ):
+            return f'compass angle beyond {low:g} to {high:g} degrees'
+    return None

@@ -2,16 +2,25 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 
+from trawl_ros.sentences.fields import (
+    SaidTime,
+    read_day,
+    read_number,
+    read_time,
+    write_number,
+    write_time,
+)
 from trawl_ros.sentences.framing import Foreign, Frame, Unreadable, framed
-from trawl_ros.sentences.numbers import read_number, write_number
 from trawl_ros.sentences.table import SentenceField, SentenceRow, SentenceTable
-from trawl_ros.sentences.times import SaidTime, read_day, read_time, write_time
 
 Readings = Mapping[tuple[str, str], float]
 """SI values by topic and field; NaN where a sentence says that there is none."""
+
+KEEL_DEPTH = ('vessel/echo_sounder/depth', 'distance')
+"""Reading that is measured from the transducer and given from the keel."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +37,8 @@ class Spoken:
         SI values by topic and field; NaN is no reading.
     time
         Time that it says; None without one.
+    valid
+        False if its status says that it has no reading.
     """
 
     system: str
@@ -35,6 +46,22 @@ class Spoken:
     talker: str
     readings: Readings
     time: SaidTime | None
+    valid: bool = True
+
+    def of_topic(self, topic: str) -> dict[str, float]:
+        """Readings of one topic by field."""
+        return {name: value for (told, name), value in self.readings.items() if told == topic}
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Topics of its readings, each once."""
+        return tuple(dict.fromkeys(topic for topic, _ in self.readings))
+
+    def restricted(self, topics: Collection[str]) -> 'Spoken':
+        """Return the sentence with the readings of these topics only."""
+        return replace(
+            self, readings={key: value for key, value in self.readings.items() if key[0] in topics}
+        )
 
 
 class SentenceReader:
@@ -44,9 +71,12 @@ class SentenceReader:
     ----------
     tables
         Systems that are understood.
+    keel_depth_m
+        Height of the echo sounder's transducer above the keel, where its sentence does not say it.
     """
 
-    def __init__(self, tables: Sequence[SentenceTable]) -> None:
+    def __init__(self, tables: Sequence[SentenceTable], *, keel_depth_m: float = 0.0) -> None:
+        self._keel_depth_m = keel_depth_m
         self.rows = {
             (table.system, name): row for table in tables for name, row in table.sentences.items()
         }
@@ -78,13 +108,13 @@ class SentenceReader:
             try:
                 if row.checksum == 'yes' and not frame.checked:
                     raise _Misfit(99, 'no checksum')
-                readings, time = _read_fields(row, texts)
+                readings, time, valid = _read_fields(row, texts, self._keel_depth_m)
             except _Misfit as misfit:
                 if misfit.fields > best:
                     best, reason = misfit.fields, str(misfit)
                 continue
             talker = address[:2] if row.address.startswith('--') else ''
-            return Spoken(system, name, talker, readings, time)
+            return Spoken(system, name, talker, readings, time, valid)
         raise Unreadable(f'sentence {_name(frame)}: {reason}')
 
     def _candidates(self, frame: Frame) -> list[tuple[tuple[str, str], str]]:
@@ -139,8 +169,8 @@ class _Misfit(ValueError):
 
 
 def _read_fields(
-    row: SentenceRow, texts: Sequence[str]
-) -> tuple[dict[tuple[str, str], float], SaidTime | None]:
+    row: SentenceRow, texts: Sequence[str], keel_depth_m: float
+) -> tuple[dict[tuple[str, str], float], SaidTime | None, bool]:
     if row.separator == ' ':
         texts = [text for text in texts if text]
     wanted = len(row.fields)
@@ -164,8 +194,10 @@ def _read_fields(
                 of_day = read_time(text) if text else None
             elif field.date is not None:
                 dates.append((field.date, text))
-            elif field.status is not None and text in field.invalid:
-                valid = False
+            elif field.keel_offset is not None:
+                keel_depth_m = _keel_depth(text, keel_depth_m)
+            elif field.status is not None:
+                valid &= text not in field.invalid and (not field.valid or text in field.valid)
         except ValueError as reason:
             raise _Misfit(number, str(reason)) from None
     try:
@@ -179,7 +211,9 @@ def _read_fields(
     if math.isnan(course) and readings.get(('vessel/velocity_ground', 'speed')) == 0.0:
         # A receiver that stands still gives no course.
         readings['vessel/velocity_ground', 'compass_course'] = 0.0
-    return readings, None if of_day is None else SaidTime(of_day, day)
+    if KEEL_DEPTH in readings:
+        readings[KEEL_DEPTH] -= keel_depth_m
+    return readings, None if of_day is None else SaidTime(of_day, day), valid
 
 
 def _write_field(field: SentenceField, readings: Readings, stamp: int, silent: bool) -> str:
@@ -187,6 +221,8 @@ def _write_field(field: SentenceField, readings: Readings, stamp: int, silent: b
         return field.text
     if field.any is not None:
         return field.any
+    if field.keel_offset is not None:
+        return field.keel_offset
     if field.reading is not None:
         return write_number(readings.get(field.target, math.nan), field)
     if field.hemisphere is not None:
@@ -197,6 +233,14 @@ def _write_field(field: SentenceField, readings: Readings, stamp: int, silent: b
     if field.status is not None:
         return field.invalid[0] if silent else field.status
     return write_time(stamp, field)
+
+
+def _keel_depth(text: str, otherwise: float) -> float:
+    """Height (m) of the transducer above the keel by the offset of a depth."""
+    if not text:
+        return otherwise
+    offset = read_number(text, SentenceField(reading=' '.join(KEEL_DEPTH), unit='m'))
+    return -offset if offset < 0.0 else otherwise
 
 
 def _after(body: str, address: str) -> str | None:

@@ -8,20 +8,20 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from trawl_ros.core.errors import SentenceError
-from trawl_ros.core.quantity import Quantity, check_quantity, check_unit, in_si
+from trawl_ros.core.quantity import check_unit
 from trawl_ros.core.resources import packaged, share_path
 from trawl_ros.core.schema import Record, load_yaml, validated
 from trawl_ros.core.units import UNITS
 from trawl_ros.records.fields import (
     FIELDS,
     RANGE_TOPICS,
-    STD_QUANTITIES,
     Stated,
+    StatedTopic,
     WaterColumn,
 )
 
 FOLDER = 'sentences'
-KINDS = ('text', 'any', 'reading', 'hemisphere', 'time', 'date', 'status')
+KINDS = ('text', 'any', 'reading', 'hemisphere', 'time', 'date', 'status', 'keel_offset')
 
 COMMANDS: dict[str, dict[str, str]] = {
     'command/winch': {'port_length': 'length', 'starboard_length': 'length'},
@@ -55,9 +55,13 @@ class SentenceField(Record):
     time, date
         Time of day: ``hhmmss`` and a number of decimals, or with colons. Date: ``ddmmyy``,
         ``yymmdd``, ``dd/mm/yy``, or one of ``dd``, ``mm``, ``yyyy``.
-    status, invalid
-        Written where there is a reading, and where there is none; one of ``invalid`` (the first
-        is written) says that there is none.
+    status, invalid, valid
+        ``status`` is written where there is a reading, the first of ``invalid`` where there is
+        none. A text in ``invalid`` says that there is no reading; where ``valid`` is given, so
+        does every text that is not in it.
+    keel_offset
+        Height (m) of the transducer above the keel with a minus sign, which is added to the depth.
+        A positive one is the transducer's own depth, and is not used. This text is written.
     """
 
     text: str | None = None
@@ -77,6 +81,8 @@ class SentenceField(Record):
     date: Literal['ddmmyy', 'yymmdd', 'dd/mm/yy', 'dd', 'mm', 'yyyy'] | None = None
     status: str | None = None
     invalid: tuple[str, ...] = ()
+    valid: tuple[str, ...] = ()
+    keel_offset: str | None = None
 
     @property
     def kind(self) -> str:
@@ -196,21 +202,6 @@ class SentenceRow(Record):
         return self
 
 
-class StatedTopic(Record):
-    """Statement on a topic that its sentence leaves out: noise and, of a distance, limits."""
-
-    std: Quantity | None = None
-    min_range: Quantity | None = None
-    max_range: Quantity | None = None
-
-    def si(self, topic: str, water: WaterColumn) -> Stated:
-        """Give noise and limits in SI units; noise of a depth becomes that of its pressure."""
-        std = in_si(self.std)
-        if STD_QUANTITIES.get(topic) == 'pressure':
-            std = water.depth_to_difference(std)
-        return Stated(std, in_si(self.min_range), in_si(self.max_range))
-
-
 class SentenceTable(Record):
     """Table of one system's sentences, as its file has it."""
 
@@ -227,20 +218,11 @@ class SentenceTable(Record):
     def _states_limits(self) -> 'SentenceTable':
         told = {topic for row in self.sentences.values() for topic in row.topics}
         for topic in sorted(told & set(RANGE_TOPICS)):
-            if topic not in self.topics or self.topics[topic].max_range is None:
-                raise ValueError(f'topics.{topic}.max_range: missing, expected a length')
+            self.topics.get(topic, StatedTopic()).check(topic)
         for topic, stated in self.topics.items():
             if topic not in told:
                 raise ValueError(f'topics.{topic}: no sentence tells it, expected one that does')
-            if stated.std is not None and topic not in STD_QUANTITIES:
-                raise ValueError(f'topics.{topic}.std: given, expected none')
-            if stated.std is not None:
-                quantity = STD_QUANTITIES[topic].replace('pressure', 'length')
-                check_quantity(f'topics.{topic}.std', stated.std, quantity)
-            for name in ('min_range', 'max_range'):
-                limit = getattr(stated, name)
-                if limit is not None:
-                    check_quantity(f'topics.{topic}.{name}', limit, 'length')
+            stated.check(topic)
         return self
 
 

@@ -9,9 +9,9 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.messages.pieces import read_orientation, read_vector
 from trawl_ros.plots.moments import MOUTH, Moment
-from trawl_ros.plots.records import Series, Strand, TowHistory
+from trawl_ros.plots.records import Quantities, Series, Strand, TowHistory
 from trawl_ros.plots.shapes import FROM_MARKERS, gear_shape, strands_of
-from trawl_ros.view.records import Gear, Plate, Quantities
+from trawl_ros.view.records import Gear, Plate
 from trawl_ros.view.ship import ShipFollower
 
 MARKERS_HOLD_S = 10.0

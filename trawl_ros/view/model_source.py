@@ -7,12 +7,13 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.from_gear import finder_for, predictor_for
 from trawl_ros.estimation.windows.records import RejectedWindow, SteadyWindow, WindowOptions
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.plots.records import Quantities
 from trawl_ros.records.channels import INPUTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.records.samples import Sample
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.predict import Prediction
-from trawl_ros.view.records import Note, Quantities
+from trawl_ros.view.records import Note
 
 ALL = 1_000_000
 """Windows of one steady state: an estimate needs two, a view all of them."""

@@ -1,17 +1,18 @@
 """Records to be shown, from the messages of a tow in the order in which they come."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-import numpy as np
 from typing_extensions import assert_never
 
 from trawl_ros.core.errors import MessageError
+from trawl_ros.core.foreign import one_line
+from trawl_ros.core.limits import DIAGNOSIS
 from trawl_ros.core.time import SECOND
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.messages.commands import read_vessel_command, read_winch_command
-from trawl_ros.messages.diagnostics import read_statuses
+from trawl_ros.messages.diagnostics import ERROR, OK, Status, read_number, read_statuses
 from trawl_ros.messages.estimates import INNOVATION, read_innovations
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
 from trawl_ros.messages.pieces import read_vector
@@ -20,7 +21,9 @@ from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_from_messages import schools_truth, seabed_truth
 from trawl_ros.model.water import build_water
 from trawl_ros.plots.moments import GEAR, MOUTH, SECTION
-from trawl_ros.plots.reading import TRUTH, sample_columns
+from trawl_ros.plots.reading import TRUTH, QuantityReader
+from trawl_ros.plots.records import Quantities
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import (
     FixSample,
     HeadingSample,
@@ -36,17 +39,19 @@ from trawl_ros.records.truth import SIDES
 from trawl_ros.view.gear_source import GearFollower
 from trawl_ros.view.model_source import ModelFollower
 from trawl_ros.view.records import (
+    Coefficients,
     Echoes,
     Innovations,
-    Quantities,
+    Interval,
+    Level,
+    Note,
     Schools,
     Section,
     SeenSchools,
     Shown,
+    Sweep,
 )
 from trawl_ros.view.ship import ShipFollower
-from trawl_ros.view.statuses import NoteBook, coefficients_of
-from trawl_ros.view.sweeps import SweepJoiner
 
 VESSEL, SCHOOLS, SEABED = 'truth/vessel/odom', 'truth/schools', 'truth/seabed'
 IDENTIFICATION, FINDINGS, TRIAL = (
@@ -61,6 +66,8 @@ TOPICS = tuple(row.name for row in CONTRACT if 'view_node' in row.heard_by)
 
 LAGGING = (IDENTIFICATION, INNOVATION, FINDINGS, TRIAL)
 """Topics whose stamps are those of windows, which are thought about while the tow goes on."""
+
+COEFFICIENT_STATUS = 'identification: coefficients'
 
 FAR_BACK_S = 120.0
 """Stamps further back than this are those of a tow that has begun anew."""
@@ -83,16 +90,15 @@ class TowReader:
     """
 
     def __init__(self, gear: GearRecord, apart_s: float = 1.0, *, model: bool = False) -> None:
-        self._depth_at = build_water(gear).depth
+        self._quantity_reader = QuantityReader(build_water(gear).depth)
         self._ship = ShipFollower()
         self._gear = GearFollower(gear, self._ship, apart_s)
         self._model = ModelFollower(gear) if model else None
         self._newest: int | None = None
         self._due: dict[str, int] = {}
-        self._sweeps = SweepJoiner()
-        self._notes = {topic: NoteBook() for topic in (IDENTIFICATION, FINDINGS, TRIAL)}
+        self._sweeps = _SweepJoiner()
+        self._notes = {topic: _NoteBook() for topic in (IDENTIFICATION, FINDINGS, TRIAL)}
         self._estimate: tuple[int, int] | None = None
-        self._doors: dict[str, tuple[int, Any]] = {}
         self._headrope_depth = math.nan
 
     def take(self, topic: str, message: Any) -> Iterator[Shown]:
@@ -157,9 +163,9 @@ class TowReader:
         yield quantities
 
     def _sample(self, sample: Sample) -> Iterator[Shown]:
-        columns = sample_columns(sample, self._depth_at)
-        if columns:
-            yield from self._quantities(Quantities(sample.stamp, 'measured', columns))
+        quantities = self._quantity_reader.sample(sample)
+        if quantities.values:
+            yield from self._quantities(quantities)
         if self._model is not None:
             yield from self._model.take(sample)
         if isinstance(sample, HeadingSample):
@@ -183,23 +189,12 @@ class TowReader:
                 assert_never(sample)
 
     def _truth(self, topic: str, stamp: int, message: Any) -> Iterator[Shown]:
-        columns = TRUTH[topic](topic, message)
+        quantities = self._quantity_reader.truth(topic, message)
         if topic == VESSEL:
             position = read_vector(message.pose.pose.position)
-            yield self._ship.truth(stamp, position, columns['heading'])
-        if topic.startswith('truth/door/'):
-            side = topic.split('/')[2]
-            self._doors[side] = stamp, read_vector(message.pose.pose.position)
-            columns |= self._spread(stamp)
-        self._headrope_depth = columns.get('net_depth', self._headrope_depth)
-        yield from self._quantities(Quantities(stamp, 'truth', columns))
-
-    def _spread(self, stamp: int) -> dict[str, float]:
-        """Distance of the doors once both are known at a stamp."""
-        places = [place for at, place in self._doors.values() if at == stamp]
-        if len(places) < len(SIDES):
-            return {}
-        return {'door_spread': float(np.linalg.norm(places[0] - places[1]))}
+            yield self._ship.truth(stamp, position, quantities.values['heading'])
+        self._headrope_depth = quantities.values.get('net_depth', self._headrope_depth)
+        yield from self._quantities(quantities)
 
     def _markers(self, stamp: int, message: Any) -> Iterator[Shown]:
         gear = self._gear.markers(stamp, message)
@@ -231,7 +226,7 @@ class TowReader:
 
     def _identification(self, stamp: int, message: Any) -> Iterator[Shown]:
         statuses = read_statuses(message)
-        estimate = coefficients_of(stamp, statuses)
+        estimate = _coefficients_of(stamp, statuses)
         if estimate is not None and self._estimate != (stamp, estimate.windows):
             self._estimate = stamp, estimate.windows
             yield estimate
@@ -276,6 +271,89 @@ def _stamp(topic: str, message: Any) -> int:
     if not message.markers:
         raise MessageError(f'{GEAR}: no markers; expected the gear')
     return stamp_of(message.markers[0])
+
+
+def _coefficients_of(stamp: int, statuses: Sequence[Status]) -> Coefficients | None:
+    """Read the estimate from the statuses of an identification.
+
+    Returns
+    -------
+    Coefficients or None
+        None before there is an estimate.
+
+    Raises
+    ------
+    MessageError
+        If a number of it is none.
+    """
+    status = next((status for status in statuses if status.name == COEFFICIENT_STATUS), None)
+    if status is None or COEFFICIENTS[0] not in status.values:
+        return None
+    intervals = {
+        name: Interval(
+            read_number(status, name),
+            read_number(status, f'{name} low'),
+            read_number(status, f'{name} high'),
+            status.values.get(f'{name} determined') == 'true',
+        )
+        for name in COEFFICIENTS
+    }
+    windows = int(read_number(status, 'windows'))
+    return Coefficients(stamp, windows, intervals, one_line(status.message, DIAGNOSIS.value))
+
+
+class _NoteBook:
+    """Notes that are new: each status of a topic is told when its sentence or its values change."""
+
+    def __init__(self) -> None:
+        self._told: dict[str, str] = {}
+
+    def take(self, stamp: int, statuses: Sequence[Status], *, values: bool) -> Iterator[Note]:
+        """Yield a note per status that says something new, with its values where these are wanted.
+
+        A status may repeat what is foreign, so each note is one line of bounded length.
+        """
+        for status in statuses:
+            told = ', '.join(f'{key} {value}' for key, value in status.values.items() if value)
+            text = f'{status.message}; {told}' if values and told else status.message
+            text = one_line(text, DIAGNOSIS.value)
+            if self._told.get(status.name) != text:
+                self._told[status.name] = text
+                yield Note(stamp, one_line(status.name, DIAGNOSIS.value), _level(status), text)
+
+
+def _level(status: Status) -> Level:
+    if status.level == OK:
+        return 'INFO'
+    return 'ERROR' if status.level == ERROR else 'WARN'
+
+
+class _SweepJoiner:
+    """Joiner of an image and the scan of the same stamp, whichever comes first."""
+
+    def __init__(self) -> None:
+        self._half: SonarImageSample | SonarScanSample | None = None
+
+    def take(self, half: SonarImageSample | SonarScanSample) -> Sweep | None:
+        """Return the sweep that a half completes, None if the other is to come.
+
+        Raises
+        ------
+        MessageError
+            If they have different numbers of beams.
+        """
+        other, self._half = self._half, half
+        if other is None or other.stamp != half.stamp:
+            return None
+        for image, scan in ((half, other), (other, half)):
+            if isinstance(image, SonarImageSample) and isinstance(scan, SonarScanSample):
+                if len(scan.ranges) != len(image.image):
+                    raise MessageError(
+                        f'sonar/image: {len(image.image)} beams, and sonar/scan of the same stamp '
+                        f'has {len(scan.ranges)}; expected as many'
+                    )
+                return Sweep(image.stamp, image, scan)
+        return None
 
 
 _OTHERS: dict[str, Callable[[TowReader, int, Any], Iterator[Shown]]] = {

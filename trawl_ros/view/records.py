@@ -5,21 +5,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.plots.records import Strand
+from trawl_ros.plots.records import Quantities, Strand
 from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 from trawl_ros.records.truth import SchoolTruth
-
-Kind = Literal['truth', 'measured', 'wanted', 'model']
-"""Origin of a quantity: the simulation, an instrument, a command, or a state of the model."""
-
-
-@dataclass(frozen=True)
-class Quantities:
-    """Values of quantities by the names of `plots.records.TowHistory`."""
-
-    stamp: int
-    kind: Kind
-    values: Mapping[str, float]
 
 
 @dataclass(frozen=True)

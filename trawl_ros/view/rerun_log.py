@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from trawl_ros.plots.records import Quantities
 from trawl_ros.report.style import FAINT, MEASURED, PORT, SECOND
 from trawl_ros.view.layout import TIMELINE, Camera, layout
-from trawl_ros.view.ranges import PanelRanges
 from trawl_ros.view.records import (
     Coefficients,
     Echoes,
@@ -15,7 +15,6 @@ from trawl_ros.view.records import (
     Gear,
     Innovations,
     Note,
-    Quantities,
     Schools,
     Section,
     SeenSchools,
@@ -23,10 +22,9 @@ from trawl_ros.view.records import (
     Shown,
     Sweep,
 )
-from trawl_ros.view.sea_scene import SeaScene, from_above
-from trawl_ros.view.series import CURVES, HEADING, LEGEND, Line, Unwrapped, rgb_of
-from trawl_ros.view.sonar_screen import LINE, THIN, SonarScreen
-from trawl_ros.view.track import Track
+from trawl_ros.view.scenes import LINE, THIN, SeaScene, SonarScreen, from_above
+from trawl_ros.view.series import CURVES, HEADING, LEGEND, Line, PanelRanges, Unwrapped, rgb_of
+from trawl_ros.view.ship import Track
 from trawl_ros.view.viewer.rerun_library import rr
 
 SIMULATED_BEFORE = 15 * 365 * 86_400 * 1_000_000_000

@@ -1,13 +1,16 @@
-"""Series over time: which quantity is drawn in which panel, in which unit, colour and place."""
+"""Series over time: panel, unit, colour and place of each quantity, and ranges of the panels.
+
+Readings far out are not to hide the others, nor noise to look large.
+"""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.plots.histories import PANELS, Curve, Panel
+from trawl_ros.plots.histories import FAR_OUT, PANELS, Curve, Panel
+from trawl_ros.plots.records import Kind
 from trawl_ros.records.truth import SIDES
 from trawl_ros.report import style
-from trawl_ros.view.records import Kind
 
 ROOT = '/histories'
 
@@ -57,6 +60,15 @@ WHITER = 0.4
 
 NARROW, BROAD = 1.3, 4.0
 """Widths of lines: dots lie on the broad ones of the model where it is right."""
+
+MOST_KEPT = 2_000
+"""Values of a panel and a kind that are kept at most, from all of the tow."""
+
+ORDINARY_PERCENTILES = (10.0, 90.0)
+"""Between these percentiles readings are ordinary, where no truth tells."""
+
+ROOM = 0.3
+"""Part of the height that is left free above and below."""
 
 RGB = tuple[int, int, int]
 
@@ -140,3 +152,70 @@ class Unwrapped:
         turned = last + float(np.remainder(angle - last + np.pi, 2.0 * np.pi) - np.pi)
         self._last[name] = turned
         return turned
+
+
+class _Thinned:
+    """Values thinned out evenly, with the extremes of all."""
+
+    def __init__(self) -> None:
+        self.kept: list[float] = []
+        self.low, self.high = np.inf, -np.inf
+        self._stride, self._seen = 1, 0
+
+    def take(self, value: float) -> None:
+        self.low, self.high = min(self.low, value), max(self.high, value)
+        self._seen += 1
+        if (self._seen - 1) % self._stride == 0:
+            self.kept.append(value)
+        if len(self.kept) > MOST_KEPT:
+            del self.kept[1::2]
+            self._stride *= 2
+
+
+class PanelRanges:
+    """Ranges of values per panel, in its unit."""
+
+    def __init__(self) -> None:
+        self._values: dict[str, tuple[Panel, dict[str, _Thinned]]] = {}
+
+    def take(self, panel: Panel, kind: Kind, value: float) -> None:
+        """Take a value."""
+        _, kinds = self._values.setdefault(path_of(panel), (panel, {}))
+        kinds.setdefault(kind, _Thinned()).take(value)
+
+    @property
+    def panels(self) -> set[str]:
+        """Entities of the panels that have values."""
+        return set(self._values)
+
+    def limits(self) -> dict[str, tuple[float, float]]:
+        """Limits by the panel's entity, where not all values are to fill the height.
+
+        That is where readings far out need several times the rest, and where nothing changes.
+        """
+        found = {}
+        for path, (panel, kinds) in self._values.items():
+            limits = _limits(kinds, panel.least)
+            if limits is not None:
+                found[path] = limits
+        return found
+
+
+def _limits(kinds: dict[str, _Thinned], least: float) -> tuple[float, float] | None:
+    extremes = {kind: [values.low, values.high] for kind, values in kinds.items()}
+    sure = [span for kind, span in extremes.items() if kind in ('truth', 'wanted')]
+    ordinary = [
+        np.percentile(values.kept, ORDINARY_PERCENTILES).tolist() for values in kinds.values()
+    ]
+    # A model that is far from what was measured is seen to be.
+    modelled = [extremes['model']] if 'model' in extremes else []
+    spans = np.array((sure or ordinary) + modelled)
+    low, high = float(spans.min()), float(spans.max())
+    room = max(high - low, least)
+    extent = max(v.high for v in kinds.values()) - min(v.low for v in kinds.values())
+    if extent < least:
+        middle = 0.5 * (low + high)
+        return middle - 0.5 * least, middle + 0.5 * least
+    if extent <= FAR_OUT * room:
+        return None
+    return low - ROOM * room, high + ROOM * room

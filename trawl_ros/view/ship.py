@@ -1,4 +1,4 @@
-"""Pose of the ship: her truth, or as fixes and compass tell it."""
+"""Pose of the ship, by truth or by fixes and compass, and her track from above."""
 
 import math
 
@@ -13,6 +13,9 @@ from trawl_ros.view.records import Fix, ShipPose
 
 TRUTH_HOLDS_S = 10.0
 """Readings move the ship when truth has said nothing for so long."""
+
+MOST_POINTS = 400
+LEAST_SPACING_M = 3.0
 
 
 class ShipFollower:
@@ -60,3 +63,21 @@ class ShipFollower:
         """Points (n, 3) in frame ``vessel`` as such in ``map``."""
         turned: FloatArray = points @ about_z(self.pose.heading).T + self.pose.position
         return turned
+
+
+class Track:
+    """Track thinned out as it becomes long: a day at sea takes no more points than an hour."""
+
+    def __init__(self) -> None:
+        self._points: list[FloatArray] = []
+        self._spacing = LEAST_SPACING_M
+
+    def take(self, point: FloatArray) -> FloatArray | None:
+        """Take a place (2,); return the track (n, 2) where it has become longer, else None."""
+        if self._points and np.hypot(*(point - self._points[-1])) < self._spacing:
+            return None
+        self._points.append(point)
+        if len(self._points) > MOST_POINTS:
+            del self._points[1::2]
+            self._spacing *= 2.0
+        return np.array(self._points)

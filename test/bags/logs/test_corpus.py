@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
-from trawl_ros.bags.logs.nmea import import_nmea
+from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.core.errors import LogError
 from trawl_ros.sentences.framing import SentenceSplitter, Unreadable, parse_line
 
@@ -28,10 +28,10 @@ def test_a_log_that_failed_once_gives_what_it_holds(tmp_path, case):
     log = HERE / 'nmea' / case['file']
     if 'error' in case:
         with pytest.raises(LogError) as raised:
-            import_nmea(log, mapping, tmp_path / 'bag', leave_out=True)
+            import_log(log, mapping, tmp_path / 'bag', leave_out=True)
         assert str(raised.value) == f'{log}: {case["error"]}'
         return
-    done = import_nmea(log, mapping, tmp_path / 'bag', leave_out=True)
+    done = import_log(log, mapping, tmp_path / 'bag', leave_out=True)
     counts = {topic.removeprefix('/trawl/'): count for topic, count in done.counts.items()}
     assert counts == case['messages']
     assert dict(done.left_out) == case.get('left_out', {})

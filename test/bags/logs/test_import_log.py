@@ -254,7 +254,7 @@ def test_mistakes_in_the_mapping_are_named_with_their_key(run, tmp_path, old, ne
 
 def test_a_log_of_too_many_readings_is_refused_and_nothing_written(run, tmp_path, monkeypatch):
     limit = Limit(5, 'readings', 'a log')
-    monkeypatch.setattr('trawl_ros.bags.logs.writing.LOG_READINGS', limit)
+    monkeypatch.setattr('trawl_ros.bags.logs.import_log.LOG_READINGS', limit)
     with pytest.raises(LogError, match=r'log.csv: more than 5 readings; expected .* several files'):
         run()
     assert not (tmp_path / 'bag').exists()

@@ -6,7 +6,7 @@ from datetime import datetime, timezone
 import pytest
 
 from trawl_ros.bags.logs.import_log import import_log
-from trawl_ros.bags.logs.numbers import parse_degrees
+from trawl_ros.bags.logs.layout import parse_degrees
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import LogError
 from trawl_ros.messages.from_messages import to_sample

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from pynmeagps.nmeahelpers import calc_checksum
 
-from trawl_ros.bags.logs.nmea import import_nmea
-from trawl_ros.bags.logs.nmea_times import spread_stamps
+from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import LogError
 from trawl_ros.messages.from_messages import to_sample
+from trawl_ros.sentences.log_times import spread_stamps
 
 MAPPING = Path(__file__).parents[3] / 'config/logs/nmea.yaml'
 KNOT = 1852 / 3600
@@ -51,7 +51,7 @@ def run(tmp_path):
         if mapping is not None:
             path = tmp_path / 'mapping.yaml'
             path.write_text(mapping)
-        said = import_nmea(log, path, tmp_path / 'bag', **options)
+        said = import_log(log, path, tmp_path / 'bag', **options)
         found = {}
         for received in Bag(tmp_path / 'bag').messages():
             topic = received.topic.removeprefix('/trawl/')
@@ -90,7 +90,7 @@ def test_one_kind_of_sentence_tells_a_topic_and_the_others_are_counted(run):
     assert len(found['vessel/fix']) == 2
     assert said.left_out['RMC for vessel/fix, which GGA tells'] == 1
     assert said.left_out['RMC for vessel/velocity_ground, which VTG tells'] == 1
-    assert said.left_out['sentence GSV, which no topic takes'] == 1
+    assert said.left_out['sentence $GPGSV, which no table has'] == 1
 
 
 def test_without_the_better_sentence_the_next_one_tells(run):
@@ -108,7 +108,7 @@ def test_a_damaged_sentence_gives_nothing_and_is_counted(run):
     assert 'vessel/heading' not in found
     assert 'vessel/echo_sounder/depth' not in found
     assert said.left_out['a sentence whose checksum is wrong'] == 1
-    assert said.left_out['a sentence without checksum'] == 1
+    assert said.left_out['sentence $SDDPT: no checksum'] == 1
     assert said.left_out['a line that is no text'] == 1
 
 
@@ -291,7 +291,7 @@ def test_no_garbled_log_crashes(run, tmp_path):
         garbled = whole[:number] + b'\xa5,*$' + whole[number + 2 :]
         path = tmp_path / f'{number}.nmea'
         path.write_bytes(garbled)
-        import_nmea(path, MAPPING, tmp_path / f'bag{number}')
+        import_log(path, MAPPING, tmp_path / f'bag{number}')
 
 
 @pytest.mark.parametrize(
@@ -299,7 +299,6 @@ def test_no_garbled_log_crashes(run, tmp_path):
     [
         (('5730.5000', '9959.4000'), 'latitude beyond -90 to 90 degrees'),
         (('15215.2500', '100000.0000'), 'longitude beyond -180 to 180 degrees'),
-        ((',N,', ',X,'), 'hemisphere other than N or S and E or W'),
         (('090.0', '720.0'), 'compass angle beyond -180 to 360 degrees'),
         (('3.9', '9999.0'), 'speed beyond 0 to 60 m/s'),
     ],
@@ -308,3 +307,23 @@ def test_what_cannot_be_is_left_out_by_its_reason(run, changed, why):
     said, found = run([RMC, RMC.replace('103851', '103852').replace(*changed)])
     assert [count for reason, count in said.left_out.items() if reason.endswith(why)] == [1]
     assert sum(map(len, found.values())) == 3
+
+
+def test_a_sentence_with_a_letter_that_is_no_hemisphere_is_left_out_whole(run):
+    said, found = run([RMC, RMC.replace('103851', '103852').replace(',N,', ',X,')])
+    reason = 'sentence $GPRMC: a hemisphere other than N, S, E or W'
+    assert said.left_out == {reason: 1}
+    assert sum(map(len, found.values())) == 2
+
+
+@pytest.mark.parametrize(
+    ('content', 'topic', 'value'),
+    [
+        ('GPVTG,090.0,T,,M,,N,7.2,K,A', 'velocity_ground', [2.0, 0, 0]),
+        ('VWVHW,180.0,T,,M,,N,7.2,K', 'velocity_water', [2.0, 0, 0]),
+        ('VDVBW,4.0,,A,,,V', 'velocity_water', [4 * KNOT, 0, 0]),
+    ],
+)
+def test_speeds_in_other_units_and_along_the_ship_alone(run, content, topic, value):
+    _, found = run([RMC.replace(',3.9,090.0', ',,'), content])
+    assert found[f'vessel/{topic}'][0].velocity == pytest.approx(value)

@@ -8,8 +8,8 @@ from mcap.reader import make_reader
 from rosbags.interfaces import QosReliability
 
 from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.storage.metadata_faults import lacking
 from trawl_ros.bags.storage.qos import dump_profiles, parse_profiles, project_profile
-from trawl_ros.bags.storage.rosbag2_keys import lacking
 from trawl_ros.bags.storage.stored import describe
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError

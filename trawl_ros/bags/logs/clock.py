@@ -10,11 +10,8 @@ from zoneinfo import ZoneInfo
 from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
+from trawl_ros.core.stamps import DAY_NS, END_NS
 from trawl_ros.core.time import SECOND
-
-DAY = 86_400 * SECOND
-LATEST = 2**31 * SECOND
-"""ns; stamps of messages count seconds in 32 bits."""
 
 UNIX: Mapping[str, int] = {
     'seconds': SECOND,
@@ -41,7 +38,7 @@ WORDS = (*UNIX, *ELAPSED, EXCEL_DAYS, DAY_OF_YEAR, ISO)
 
 _EPOCH = datetime(1970, 1, 1)
 _EXCEL_EPOCH = datetime(1899, 12, 30)
-_HALF_DAY = DAY // 2
+_HALF_DAY = DAY_NS // 2
 _ISO = re.compile(
     r'(?P<day>\d{4}-\d\d-\d\d|\d{8})[T _]+(?P<h>\d\d):?(?P<m>\d\d)(?::?(?P<s>\d\d)'
     r'(?:[.,](?P<fraction>\d{1,9}))?)?\s*(?P<zone>Z|[+-]\d\d(?::?\d\d)?)?',
@@ -147,7 +144,7 @@ class ClockReader:
         except (InvalidOperation, OverflowError):
             raise ValueError(f'a time as {self._clock.format}') from None
         stamp += round(self._clock.add_s * SECOND)
-        if not 0 <= stamp < LATEST:
+        if not 0 <= stamp < END_NS:
             raise ValueError('a time from 1970 to 2038')
         return stamp
 
@@ -160,10 +157,10 @@ class ClockReader:
         if form in ELAPSED:
             return self._start + self._scaled(text, ELAPSED[form])
         if form == EXCEL_DAYS:
-            return self._to_utc(_nanoseconds(_EXCEL_EPOCH) + self._scaled(text, DAY))
+            return self._to_utc(_nanoseconds(_EXCEL_EPOCH) + self._scaled(text, DAY_NS))
         if form == DAY_OF_YEAR:
             first = _nanoseconds(datetime(self._clock.year or 1970, 1, 1))
-            return self._to_utc(first + self._scaled(text, DAY) - DAY)
+            return self._to_utc(first + self._scaled(text, DAY_NS) - DAY_NS)
         if form == ISO:
             return self._iso(text)
         try:
@@ -211,7 +208,7 @@ class ClockReader:
     def _on_its_day(self, time: datetime) -> int:
         of_day = _nanoseconds(datetime.combine(_EPOCH, time.time()))
         if self._last_of_day is not None and of_day < self._last_of_day - _HALF_DAY:
-            self._day += DAY
+            self._day += DAY_NS
         self._last_of_day = of_day
         return self._day + of_day
 

@@ -1,4 +1,4 @@
-"""Import of foreign CSV logs as bags, by a mapping from columns to topics.
+"""Import of foreign logs as bags, by a mapping from columns or sentences to topics.
 
 Everything is read before anything is written: a log with a mistake in its last line leaves no
 half a bag.
@@ -6,43 +6,77 @@ half a bag.
 
 import math
 from collections import Counter
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
 from trawl_ros.bags.logs.clock import ClockReader
-from trawl_ros.bags.logs.layout import BadRow, LogRow, read_rows
+from trawl_ros.bags.logs.layout import (
+    BadRow,
+    LogRow,
+    hemisphere_sign,
+    parse_degrees,
+    parse_number,
+    read_rows,
+)
 from trawl_ros.bags.logs.mapping import ColumnMapping, LogMapping, TopicMapping, load_mapping
-from trawl_ros.bags.logs.numbers import hemisphere_sign, parse_degrees, parse_number
-from trawl_ros.bags.logs.writing import Imported, write_samples
+from trawl_ros.bags.writer import BagWriter
+from trawl_ros.core.errors import BagError, LogError
+from trawl_ros.core.files import new_folder, written_folder
+from trawl_ros.core.limits import LOG_READINGS
+from trawl_ros.core.stamps import LOG_APART_NS, judge_stamps
+from trawl_ros.messages.cdr import serialize
+from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.fields import sample_of_fields
-from trawl_ros.records.possible import impossible, impossible_compass
+from trawl_ros.records.possible import impossible, impossible_fields
 from trawl_ros.records.samples import Sample
+from trawl_ros.records.topics import absolute
+from trawl_ros.sentences.log import SentenceLogReader, listed
 
 NO_READING = 'no reading, or none that is new'
 
 
+@dataclass(frozen=True)
+class Imported:
+    """Result of an import.
+
+    ``rows`` (lines of sentences) were read, ``counts`` are messages by full topic name,
+    ``left_out`` says how many rows gave none, by reason. ``notes`` are sentences on its
+    clocks, and on what it lacks. ``of_sentences`` is true for a log of sentences.
+    """
+
+    rows: int
+    counts: Mapping[str, int]
+    left_out: Mapping[str, int]
+    notes: tuple[str, ...] = ()
+    of_sentences: bool = False
+
+
 def import_log(
-    csv_path: str | Path,
+    log_path: str | Path,
     mapping_path: str | Path,
     bag_path: str | Path,
     *,
     leave_out: bool = False,
 ) -> Imported:
-    r"""Turn a CSV log into a bag.
+    r"""Turn a log into a bag.
 
     Parameters
     ----------
-    csv_path
-        The log.
+    log_path
+        The log: a table (CSV and its relatives), or sentences of NMEA 0183 and of fishing gear.
     mapping_path
-        Says how it lies in its file and which column is what; see `LogMapping`.
+        Says which column or sentence is what; see `LogMapping` and `SentenceMapping`.
     bag_path
         Folder to be made.
     leave_out
         True if rows that cannot be understood are left out and counted; by default the first
-        of them is an error.
+        of them is an error. Damaged sentences always are left out: serial lines lose bytes. Of
+        them only a recorder's time that cannot be understood is an error.
 
     Returns
     -------
@@ -54,7 +88,8 @@ def import_log(
     Raises
     ------
     LogError
-        If log or mapping are missing or wrong; names file, line and column.
+        If log or mapping are missing or wrong, or nothing in the log says the time; names file,
+        line and column.
     BagError
         If the bag exists or cannot be written.
 
@@ -72,14 +107,18 @@ def import_log(
     >>> done.rows, dict(done.counts)
     (2, {'/trawl/door/port/pressure': 2})
     """
-    path = Path(csv_path)
-    reading = _Reading(path, load_mapping(mapping_path), leave_out)
-    done = write_samples(path, reading.samples(), bag_path, lambda: (reading.rows, reading.left))
-    return replace(done, notes=(*reading.notes, *done.notes))
+    path = Path(log_path)
+    mapping = load_mapping(mapping_path)
+    reader: _TableReader | SentenceLogReader
+    if isinstance(mapping, LogMapping):
+        reader = _TableReader(path, mapping, leave_out)
+    else:
+        reader = SentenceLogReader(path, mapping.options(leave_out=leave_out))
+    return _write_samples(path, reader, bag_path)
 
 
-class _Reading:
-    """Single pass through a log, with counts."""
+class _TableReader:
+    """Single pass through a table, with counts of rows, of those left out, and notes."""
 
     def __init__(self, path: Path, mapping: LogMapping, leave_out: bool) -> None:
         self.rows = 0
@@ -142,7 +181,7 @@ class _Reading:
             if entry.changes_only and readings == self._last.get(topic):
                 continue
             water = self._mapping.water
-            stated = entry.stated(topic, water)
+            stated = entry.si(topic, water)
             if stamp is not None and (
                 sample := sample_of_fields(topic, stamp, readings, stated, water)
             ):
@@ -161,11 +200,7 @@ class _Reading:
         sample: Sample,
         readings: dict[str, float],
     ) -> None:
-        angles = [value for field, value in readings.items() if field.startswith('compass_')]
-        why = impossible(sample) or next(
-            filter(None, (impossible_compass(math.degrees(angle)) for angle in angles)), None
-        )
-        if why:
+        if why := impossible(sample) or impossible_fields(readings):
             columns = ' and '.join(repr(source.column) for source in entry.fields.values())
             raise BadRow(
                 f'{row.path}: line {row.line}, column {columns}: found a {why} for {topic}',
@@ -208,6 +243,38 @@ class _Reading:
             except ValueError as expected:
                 raise row.bad(source.hemisphere, str(expected)) from None
         return source.si(number)
+
+
+def _write_samples(
+    path: Path, reader: _TableReader | SentenceLogReader, bag_path: str | Path
+) -> Imported:
+    """Write the samples of a log as a bag, in the order of time."""
+    new_folder(Path(bag_path), BagError)
+    ordered = list(islice(reader.samples(), LOG_READINGS.value + 1))
+    if len(ordered) > LOG_READINGS.value:
+        raise LogError(f'{path}: more than {LOG_READINGS}; expected a log in several files')
+    judged = judge_stamps(
+        np.array([sample.stamp for sample in ordered], dtype=np.int64), apart_ns=LOG_APART_NS
+    )
+    ordered = [one for one, false in zip(ordered, judged.false, strict=True) if not false]
+    ordered.sort(key=lambda sample: sample.stamp)
+    if not ordered:
+        left_out = {**reader.left, **judged.reasons}
+        why = f' ({listed(left_out)})' if left_out else ''
+        raise LogError(
+            f'{path}: {reader.rows} rows without any reading{why}; expected at least one'
+        )
+    counts: Counter[str] = Counter()
+    with (
+        written_folder(Path(bag_path), BagError) as draft,
+        BagWriter(draft, custom_data={'log': path.name}) as bag,
+    ):
+        for sample in ordered:
+            topic, message = sample_message(sample)
+            bag.write(absolute(topic), message.__msgtype__, serialize(message), sample.stamp)
+            counts[absolute(topic)] += 1
+    notes = (*reader.notes, *judged.sentences())
+    return Imported(reader.rows, counts, reader.left, notes, isinstance(reader, SentenceLogReader))
 
 
 def _number(text: str) -> float | None:

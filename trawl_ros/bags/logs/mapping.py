@@ -1,18 +1,23 @@
-"""Mapping files of CSV logs: column and unit of each reading."""
+"""Mapping files of logs: column and unit of each reading, or sentences of each topic."""
 
+from datetime import date
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from trawl_ros.bags.logs.clock import Clock
+from trawl_ros.bags.logs.clock import Clock, ClockReader
 from trawl_ros.bags.logs.layout import LogLayout
 from trawl_ros.core.errors import LogError
-from trawl_ros.core.quantity import Quantity, check_unit, in_si
+from trawl_ros.core.quantity import Quantity, check_quantity, check_unit
 from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import Record, load_yaml, validated
+from trawl_ros.core.stamps import DAY_NS
 from trawl_ros.core.units import UNITS
-from trawl_ros.records.fields import FIELDS, RANGE_TOPICS, STD_QUANTITIES, Stated, WaterColumn
+from trawl_ros.records.fields import FIELDS, StatedTopic, WaterColumn
+from trawl_ros.sentences.fields import YEARS
+from trawl_ros.sentences.log import SentenceLogOptions, TopicChoice, ship_kinds
+from trawl_ros.sentences.table import load_tables
 
 _TOGETHER = (
     'door/port/attitude',
@@ -42,7 +47,7 @@ class ColumnMapping(Record):
         return (cell * self.scale + self.offset) * UNITS[self.unit].size
 
 
-class TopicMapping(Record):
+class TopicMapping(StatedTopic):
     """Mapping of one topic: its readings by field, and the errors its messages state.
 
     An ``optional`` topic is left out where the log has not all of its columns. ``clock`` is the
@@ -55,23 +60,12 @@ class TopicMapping(Record):
     clock: Clock | None = None
     optional: bool = False
     changes_only: bool = False
-    std: Quantity | None = None
-    min_range: Quantity | None = None
-    max_range: Quantity | None = None
 
     @property
     def columns(self) -> list[str]:
         """Columns of its readings, and those of hemispheres."""
         fields = self.fields.values()
         return [field.column for field in fields] + [f.hemisphere for f in fields if f.hemisphere]
-
-    def stated(self, topic: str, water: WaterColumn | None) -> Stated:
-        """Give noise and limits in SI units; a depth gauge's noise in metres becomes pressure."""
-        std = in_si(self.std)
-        in_metres = self.std is not None and UNITS[self.std.unit].quantity == 'length'
-        if water and in_metres and STD_QUANTITIES.get(topic) == 'pressure':
-            std = water.depth_to_difference(std)
-        return Stated(std, in_si(self.min_range), in_si(self.max_range))
 
 
 class LogMapping(Record):
@@ -108,8 +102,7 @@ class LogMapping(Record):
             if topic not in FIELDS:
                 raise ValueError(f'{where}: unknown topic, expected one of {", ".join(FIELDS)}')
             self._check_fields(where, mapping.fields, FIELDS[topic])
-            self._check_std(where, topic, mapping.std)
-            self._check_limits(where, mapping, topic in RANGE_TOPICS)
+            mapping.check(topic, has_water=self.water is not None)
         return self
 
     def _check_fields(
@@ -135,43 +128,106 @@ class LogMapping(Record):
         if paired and len(fields) < len(known):
             raise ValueError(f'{where}.fields: {", ".join(fields)}, expected {" and ".join(known)}')
 
-    def _check_limits(self, where: str, mapping: TopicMapping, wanted: bool) -> None:
-        limits = {'min_range': mapping.min_range, 'max_range': mapping.max_range}
-        for name, limit in limits.items():
-            if limit is None and wanted:
-                raise ValueError(f'{where}.{name}: missing, expected a length')
-            if limit is not None and not wanted:
-                raise ValueError(f'{where}.{name}: given, expected none: it measures no distance')
-            if limit is not None:
-                check_unit(f'{where}.{name}.unit', limit.unit, 'length')
-        low, high = limits.values()
-        if low and high and not 0 <= low.si() < high.si():
-            raise ValueError(
-                f'{where}.max_range: found {high.value:g} {high.unit}, '
-                f'expected more than min_range ({low.value:g} {low.unit})'
+
+class RecorderClock(Clock):
+    """Clock of the recorder, which writes a time in front of each sentence."""
+
+    columns: tuple[str, ...] = ('time in front of the sentence',)
+
+
+class SentenceMapping(Record):
+    """Mapping of a log of sentences.
+
+    ``time`` says whether stamps are those in the sentences (the date from RMC or ZDA, or
+    ``date`` for the first of them) or those that a recorder put in front. ``keel_depth`` is how
+    far the keel is below the transducer of the echo sounder, where its sentence does not say it.
+    ``topics`` chooses among the ship's sentences. ``systems`` names tables of sentences of fishing
+    gear, packaged ones or files; ``water`` makes pressures of their depths.
+    """
+
+    time: Literal['sentences', 'recorder'] = 'sentences'
+    recorder: RecorderClock | None = None
+    date: str | None = None
+    need_checksum: bool = True
+    keel_depth: Quantity = Quantity(value=0.0, unit='m')
+    topics: Annotated[dict[str, TopicChoice], Field(min_length=1)]
+    systems: tuple[str, ...] = ()
+    water: WaterColumn = WaterColumn(density_kg_m3=1025.0)
+
+    def options(self, *, leave_out: bool) -> SentenceLogOptions:
+        """Return the options of the reader.
+
+        Raises
+        ------
+        SentenceError
+            If a table of a system is missing or wrong.
+        """
+        first = date.fromisoformat(self.date) if self.date else None
+        return SentenceLogOptions(
+            choices=self.topics,
+            gear=load_tables(self.systems),
+            water=self.water,
+            keel_depth_m=self.keel_depth.si(),
+            need_checksum=self.need_checksum,
+            start=None if first is None else (first - date(1970, 1, 1)).days * DAY_NS,
+            recorder=ClockReader(self.recorder).read if self.recorder else None,
+            leave_out=leave_out,
+        )
+
+    @model_validator(mode='after')
+    def _fits_the_topics(self) -> 'SentenceMapping':
+        if (self.time == 'recorder') != (self.recorder is not None):
+            found = (
+                'missing, expected its format' if self.recorder is None else 'given, expected none'
             )
+            raise ValueError(f'recorder: {found} for time {self.time!r}')
+        if self.date is not None and not _is_date(self.date):
+            raise ValueError(
+                f'date: found {self.date!r}, expected as 2026-08-01, from {YEARS[0]} to {YEARS[-1]}'
+            )
+        check_quantity('keel_depth', self.keel_depth, 'length')
+        kinds = ship_kinds()
+        for topic, choice in self.topics.items():
+            if topic not in kinds:
+                raise ValueError(
+                    f'topics.{topic}: unknown topic, expected one of {", ".join(kinds)}'
+                )
+            if strange := [name for name in choice.sentences if name not in kinds[topic]]:
+                raise ValueError(
+                    f'topics.{topic}.sentences: found {", ".join(strange)}, expected some of '
+                    f'{", ".join(kinds[topic])}'
+                )
+            choice.check(topic)
+        return self
 
-    def _check_std(self, where: str, topic: str, std: Quantity | None) -> None:
-        quantity = STD_QUANTITIES.get(topic)
-        if std is None:
-            return
-        if quantity is None:
-            raise ValueError(f'{where}.std: given, expected none: its messages cannot state it')
-        if std.value <= 0:
-            raise ValueError(f'{where}.std.value: found {std.value:g}, expected more than 0')
-        # A depth gauge is specified in metres as often as in pascals.
-        if quantity == 'pressure' and self.water and UNITS.get(std.unit, ('',))[0] == 'length':
-            return
-        check_unit(f'{where}.std.unit', std.unit, quantity)
+
+class _SentenceFile(Record):
+    nmea: SentenceMapping
 
 
-def load_mapping(path: str | Path) -> LogMapping:
-    """Read a mapping.
+def _is_date(text: str) -> bool:
+    try:
+        return date.fromisoformat(text).year in YEARS
+    except ValueError:
+        return False
+
+
+def load_mapping(path: str | Path) -> LogMapping | SentenceMapping:
+    """Read a mapping: one of sentences if its only key is ``nmea``, else one of a table.
+
+    Parameters
+    ----------
+    path
+        YAML file, or the name of one that comes with the package.
 
     Raises
     ------
     LogError
-        If the file is missing, unreadable, or names topics, fields or units that do not exist.
+        If the file is missing, unreadable, or names topics, fields, sentences or units that do
+        not exist.
     """
     file = packaged(path, 'logs', LogError)
-    return validated(LogMapping, load_yaml(file, LogError), file, LogError)
+    data = load_yaml(file, LogError)
+    if 'nmea' in data:
+        return validated(_SentenceFile, data, file, LogError).nmea
+    return validated(LogMapping, data, file, LogError)

@@ -7,6 +7,7 @@ import io
 import struct
 import zlib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import BinaryIO
 
 import lz4.frame
@@ -17,8 +18,8 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, Message, Schema
 from mcap.stream_reader import StreamReader
 
-from trawl_ros.bags.storage.allowance import Allowance
-from trawl_ros.core.limits import CHUNK_BYTES
+from trawl_ros.core.errors import BagError
+from trawl_ros.core.limits import BAG_MESSAGES, BAG_UNPACKED, CHUNK_BYTES
 
 MAX_CHUNK_BYTES = CHUNK_BYTES.value
 """Largest chunk (and largest single record) that is read; writers make them of about 1 MB."""
@@ -36,18 +37,75 @@ DAMAGE = (
 
 Record = Schema | Channel | Message
 
-_RECORD_HEAD = 9
+BYTES_PER_MESSAGE = 8
+"""Of a file, for each message beyond `BAG_MESSAGES`; its entry in an index takes 16."""
+
+RATIO = 200
+"""Unpacked bytes per byte of a file, beyond `BAG_UNPACKED`; bags of tows have 8."""
+
+STEP_BYTES = 1 << 20
+"""Bytes that are unpacked at once."""
+
+RECORD_START = struct.Struct('<BQ')
+"""Opcode and length of a record."""
+
 _MESSAGE = struct.Struct('<BQHIQQ')
 """Opcode, length, channel, sequence, log and publish time of a message."""
-
-_STEP = 1 << 20
-_SMALL_STEP = 1 << 10
-_FRAME_START = 64
-"""Bytes of a compressed frame that hold its header."""
 
 
 class Damaged(ValueError):
     """Damaged bytes; the text says how."""
+
+
+class Allowance:
+    """Allowance of one pass through a file: the bytes that may be unpacked from it.
+
+    Parameters
+    ----------
+    path
+        Of the file, named in errors.
+    size
+        Size of it in bytes: small files that claim to hold much hold nothing that was recorded.
+    """
+
+    def __init__(self, path: Path, size: int) -> None:
+        self._path = path
+        self._size = size
+        self._bytes = BAG_UNPACKED.value + RATIO * size
+        self._records = BAG_MESSAGES.value + size // BYTES_PER_MESSAGE
+
+    def take_bytes(self, count: int) -> None:
+        """Count bytes that were unpacked; a chunk of them is bounded by itself.
+
+        Raises
+        ------
+        BagError
+            If that is more than is allowed.
+        """
+        self._bytes -= count
+        if self._bytes < 0:
+            raise self._beyond(f'{BAG_UNPACKED} and {RATIO} per byte')
+
+    def take_records(self, plain: bytes) -> None:
+        """Count the records in bytes that are about to be taken apart.
+
+        Raises
+        ------
+        BagError
+            As `take_bytes`.
+        """
+        place = 0
+        while place + RECORD_START.size <= len(plain):
+            place += RECORD_START.size + RECORD_START.unpack_from(plain, place)[1]
+            self._records -= 1
+            if self._records < 0:
+                raise self._beyond(f'{BAG_MESSAGES} and one per {BYTES_PER_MESSAGE} bytes')
+
+    def _beyond(self, most: str) -> BagError:
+        return BagError(
+            f'{self._path}: {self._size} bytes that unpack to more than any recording does; '
+            f'expected {most} at most'
+        )
 
 
 def parse_records(data: bytes) -> Iterator[object]:
@@ -102,7 +160,7 @@ def _records_in(plain: bytes) -> list[Record]:
     while place < size:
         if plain[place] == Opcode.MESSAGE and place + head <= size:
             _, length, channel, sequence, log_time, publish_time = unpack(plain, place)
-            end = place + _RECORD_HEAD + length
+            end = place + RECORD_START.size + length
             if place + head <= end <= size:
                 data = plain[place + head : end]
                 records.append(Message(channel, log_time, data, publish_time, sequence))
@@ -133,77 +191,8 @@ def _record_of(stream: ReadDataStream) -> Record | None:
     return record
 
 
-def salvage(record: bytes) -> bytes:
-    """Unpack a damaged chunk as far as that goes; what comes out may be wrong anywhere."""
-    pieces: list[bytes] = []
-    try:
-        chunk = next(parse_records(record))
-        if not isinstance(chunk, Chunk):
-            return b''
-        if chunk.compression == '':
-            return chunk.data
-        unpack = (
-            lz4.frame.open(io.BytesIO(chunk.data))
-            if chunk.compression == 'lz4'
-            else _unpacker(chunk.data)
-        )
-        left = min(chunk.uncompressed_size, MAX_CHUNK_BYTES)
-        while left > 0 and (piece := unpack.read(min(left, _SMALL_STEP))):
-            pieces.append(piece)
-            left -= len(piece)
-    except (*DAMAGE, EOFError):
-        pass
-    return b''.join(pieces)
-
-
-def inflate(data: bytes) -> bytes:
-    """Unpack one message that rosbag2 compressed by itself (zstd).
-
-    Raises
-    ------
-    Damaged
-        If it is not zstd, or becomes larger than what is read.
-    """
-    try:
-        plain = _read_up_to(_unpacker(data), MAX_CHUNK_BYTES + 1)
-        if len(plain) > MAX_CHUNK_BYTES:
-            raise Damaged(f'it becomes more than the {MAX_CHUNK_BYTES} bytes that are read')
-        _check_size(data, len(plain))
-    except zstandard.ZstdError as reason:
-        raise Damaged(str(reason)) from reason
-    return plain
-
-
-def inflate_file(packed: BinaryIO, plain: BinaryIO, limit: int) -> None:
-    """Unpack a file that rosbag2 compressed as a whole (zstd).
-
-    Raises
-    ------
-    Damaged
-        If it is not zstd, or becomes larger than ``limit`` bytes.
-    """
-    size = 0
-    try:
-        reader = _unpacker(packed)
-        while piece := reader.read(_STEP):
-            size += len(piece)
-            if size > limit:
-                raise Damaged(f'it becomes more than {limit} bytes, for which there is no room')
-            plain.write(piece)
-        packed.seek(0)
-        _check_size(packed.read(_FRAME_START), size)
-    except zstandard.ZstdError as reason:
-        raise Damaged(str(reason)) from reason
-
-
-def _check_size(start: bytes, size: int) -> None:
-    """Compare with the size in the frame; its reader takes one that is cut short for the end."""
-    stated = zstandard.get_frame_parameters(start).content_size
-    if stated != zstandard.CONTENTSIZE_UNKNOWN and size < stated:
-        raise Damaged(f'it should become {stated} bytes and becomes {size}')
-
-
-def _unpacker(data: bytes | BinaryIO) -> zstandard.ZstdDecompressionReader:
+def unpacker(data: bytes | BinaryIO) -> zstandard.ZstdDecompressionReader:
+    """Reader of zstd in bounded memory."""
     return zstandard.ZstdDecompressor(max_window_size=MAX_CHUNK_BYTES).stream_reader(
         data, read_across_frames=True
     )
@@ -218,7 +207,7 @@ def _decompress(chunk: Chunk) -> bytes:
             plain = chunk.data
         case 'zstd':
             # Step by step, since a frame may claim another size than the chunk does.
-            plain = _read_up_to(_unpacker(chunk.data), size + 1)
+            plain = read_up_to(unpacker(chunk.data), size + 1)
         case 'lz4':
             plain = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=size + 1)
         case other:
@@ -228,10 +217,11 @@ def _decompress(chunk: Chunk) -> bytes:
     return plain
 
 
-def _read_up_to(reader: zstandard.ZstdDecompressionReader, limit: int) -> bytes:
+def read_up_to(reader: zstandard.ZstdDecompressionReader, limit: int) -> bytes:
+    """Read what a reader unpacks, up to a number of bytes."""
     pieces: list[bytes] = []
     left = limit
-    while left and (piece := reader.read(min(left, _STEP))):
+    while left and (piece := reader.read(min(left, STEP_BYTES))):
         pieces.append(piece)
         left -= len(piece)
     return b''.join(pieces)

@@ -12,10 +12,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from mcap.records import Message
-
 from trawl_ros.bags.storage.qos import dump_profiles, parse_profiles
-from trawl_ros.bags.storage.stored import Definition, Stored
+from trawl_ros.bags.storage.stored import Definition, RawMessage
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.foreign import one_line, open_file
 from trawl_ros.core.limits import BAG_OPERATIONS, CHUNK_BYTES
@@ -53,7 +51,6 @@ class Database:
     """
 
     storage = 'sqlite3'
-    counts_arrivals = False
 
     def __init__(self, path: Path, report: Callable[[str], None]) -> None:
         self.path = path
@@ -101,7 +98,7 @@ class Database:
         except sqlite3.Error:
             return None
 
-    def messages(self) -> Iterator[Stored]:
+    def messages(self) -> Iterator[RawMessage]:
         """Give all messages in the order of their times, as far as the database can be read."""
         lost: Counter[str] = Counter()
         read = size = 0
@@ -118,8 +115,7 @@ class Database:
                         lost['that are not bytes with a time'] += 1
                     else:
                         topic, type_name = self._topics[number]
-                        message = Message(number, stamp, data, stamp, 0)
-                        yield Stored(topic, type_name, message)
+                        yield RawMessage(topic, type_name, stamp, stamp, data, number)
                 (there,) = database.execute('SELECT count(*) FROM messages').fetchone()
                 if there > read:
                     lost[f'of more than {CHUNK_BYTES.value} bytes'] += there - read

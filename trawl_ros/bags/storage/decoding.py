@@ -13,7 +13,6 @@ from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.store import Typestore
 
 from trawl_ros.bags.storage.definitions import make_store, objects_per_byte, parse_definition
-from trawl_ros.bags.storage.refilling import RefillingDecoder
 from trawl_ros.bags.storage.stored import Definition
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.foreign import one_line, short
@@ -60,19 +59,6 @@ class BagTypes:
                 ) from reason
 
         return decoded
-
-    def refilling(self, topic: str, definition: Definition) -> Decoder:
-        """Make a decoder of a topic's bytes whose messages are good until the next one only.
-
-        Raises
-        ------
-        BagError
-            As `decoder`.
-        """
-        decode = self.decoder(topic, definition)
-        if not definition.text:
-            return decode
-        return RefillingDecoder(decode, self.store(topic, definition), definition.type)
 
     def store(self, topic: str, definition: Definition) -> Typestore:
         """Give the types of a topic.

@@ -5,8 +5,8 @@ through record by record as far as it goes.
 """
 
 import struct
-from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -16,23 +16,26 @@ from mcap.opcode import Opcode
 from mcap.records import Header, Message, Statistics
 from mcap.writer import MCAP0_MAGIC
 
-from trawl_ros.bags.storage.allowance import Allowance
-from trawl_ros.bags.storage.chunk_index import Piece, is_finished, read_summary
+from trawl_ros.bags.storage.chunk_index import Piece, in_log_order, is_finished, read_summary
 from trawl_ros.bags.storage.chunks import (
     DAMAGE,
     MAX_CHUNK_BYTES,
+    RECORD_START,
+    Allowance,
     Damaged,
     Record,
     open_chunk,
     parse_records,
 )
-from trawl_ros.bags.storage.copies import find_copies
-from trawl_ros.bags.storage.descriptions import Descriptions, read_remains
-from trawl_ros.bags.storage.log_order import in_log_order
+from trawl_ros.bags.storage.damage import (
+    find_copies,
+    read_remains,
+    recover,
+    sample_messages,
+    scan_records,
+)
 from trawl_ros.bags.storage.mcap_output import LIBRARY
-from trawl_ros.bags.storage.mcap_scan import RECORD_START, scan_records
-from trawl_ros.bags.storage.recovery import recover, sample_messages
-from trawl_ros.bags.storage.stored import Definition, StatedTopics, Stored
+from trawl_ros.bags.storage.stored import Definition, Descriptions, RawMessage
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.foreign import open_file
 from trawl_ros.core.limits import LATEST_STAMP
@@ -74,7 +77,7 @@ class McapFile:
         self,
         path: Path,
         report: Callable[[str], None],
-        stated: Callable[[], StatedTopics] | None = None,
+        stated: Callable[[], Mapping[str, Definition]] | None = None,
     ) -> None:
         self.path = path
         self._report = report
@@ -108,11 +111,6 @@ class McapFile:
         return len(self._damaged)
 
     @property
-    def counts_arrivals(self) -> bool:
-        """True if the numbers of its messages, by topic, are the order in which they came."""
-        return self._library == LIBRARY
-
-    @property
     def definitions(self) -> dict[str, Definition]:
         """Definition of each topic's messages; the first channel of a topic counts."""
         by_topic: dict[str, Definition] = {}
@@ -139,14 +137,16 @@ class McapFile:
                 counts[key] = counts.get(key, 0) + count
         return counts
 
-    def messages(self) -> Iterator[Stored]:
+    def messages(self) -> Iterator[RawMessage]:
         """Give all messages in the order of their log times; equal ones as they stand in the file.
 
-        Memory holds only chunks that overlap.
+        Memory holds only chunks that overlap. The numbers of messages, by topic, are the order in
+        which they came where this project wrote the file.
         """
         lost_channels: Counter[int] = Counter()
         late: Counter[str] = Counter()
         allowed = Allowance(self.path, self._size)
+        counted = self._library == LIBRARY
         with open_file(self.path, BagError) as stream:
             load = partial(self._load, stream, allowed=allowed)
             known = {
@@ -160,7 +160,14 @@ class McapFile:
                 elif message.log_time > LATEST_STAMP.value:
                     late[described[0]] += 1
                 else:
-                    yield Stored(*described, message)
+                    yield RawMessage(
+                        *described,
+                        message.log_time,
+                        message.publish_time,
+                        message.data,
+                        message.channel_id,
+                        message.sequence if counted else 0,
+                    )
         for number, count in lost_channels.items():
             self._report(
                 f'{self.path}: {count} messages of channel {number}, whose description was lost, '
@@ -256,24 +263,20 @@ class McapFile:
             self._recover(stream, lost)
 
     def _recover(self, stream: BinaryIO, lost: list[int]) -> None:
-        """Tell channels by evidence that nothing sound describes."""
+        """Describe channels by what is left of their descriptions in damaged parts."""
         allowed = Allowance(self.path, self._size)
         chunks = (self._load(stream, piece, allowed) or [] for piece in self._pieces)
         recovered = recover(
             sample_messages(chunks, lost),
             [*self._known.records(), *read_remains(stream, self._damaged, self._size)],
-            {n: topic for n, (topic, _) in self._known.all().items() if n not in lost},
+            [topic for n, (topic, _) in self._known.all().items() if n not in lost],
             self._stated() if self._stated else None,
-            in_order=self._library == LIBRARY,
         )
-        reasons: defaultdict[str, list[str]] = defaultdict(list)
         for number, channel in recovered.items():
             self._known.add(number, channel.topic, channel.definition)
-            reasons[channel.why].append(channel.topic)
-        for why, topics in reasons.items():
             self._report(
-                f'{self.path}: descriptions of {len(topics)} channels were lost; these are taken '
-                f'for {", ".join(topics)}, {why}'
+                f'{self.path}: the description of channel {number} was lost; it is taken for '
+                f'{channel.topic}, as damaged parts of the file say and {channel.witness} confirms'
             )
 
     def _walk(self, stream: BinaryIO) -> Iterator[tuple[int, int, int]]:

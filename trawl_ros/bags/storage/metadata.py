@@ -13,7 +13,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from trawl_ros.bags.storage.qos import dump_profiles, parse_profiles
-from trawl_ros.bags.storage.stored import Definition, StatedTopics
+from trawl_ros.bags.storage.stored import Definition
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.foreign import open_file, short
 from trawl_ros.core.limits import METADATA_BYTES, METADATA_DEPTH, METADATA_VALUES, NAME
@@ -81,25 +81,21 @@ class BagMetadata(_Lenient):
             counts[key] = counts.get(key, 0) + entry.message_count
         return {key: count for key, count in counts.items() if count}
 
-    def stated(self) -> StatedTopics:
+    def stated(self) -> dict[str, Definition]:
         """Give what is said of each topic, for files in which it was lost."""
         offered = self.offered()
         entries = [entry.topic_metadata for entry in self.topics_with_message_count]
-        topics = tuple(
-            (
-                topic.name,
-                Definition(
-                    topic.type,
-                    'cdr',
-                    '',
-                    b'',
-                    qos=offered.get(topic.name, ''),
-                    type_hash=topic.type_description_hash,
-                ),
+        return {
+            topic.name: Definition(
+                topic.type,
+                'cdr',
+                '',
+                b'',
+                qos=offered.get(topic.name, ''),
+                type_hash=topic.type_description_hash,
             )
             for topic in entries
-        )
-        return StatedTopics(topics, len(self.relative_file_paths))
+        }
 
     def offered(self) -> dict[str, str]:
         """Offered QoS by topic, as text; left out where it is not valid."""

@@ -1,20 +1,27 @@
-"""Stored messages and definitions of a bag's file, whatever its storage."""
+"""Messages and definitions as a bag's file has them, whatever its storage."""
 
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from mcap.records import Message
+from mcap.records import Channel, Schema
 
 from trawl_ros.core.errors import BagError
 from trawl_ros.messages.cdr import STORE, message_definition, type_hash
 
 
-class Stored(NamedTuple):
-    """Stored message of a file, with its topic and type: a tuple, for there are many."""
+class RawMessage(NamedTuple):
+    """Raw message of a bag: full topic name, type, times in ns, CDR bytes, channel, and number of
+    arrival (0 where it is not known).
+    """
 
     topic: str
     type: str
-    message: Message
+    log_time: int
+    publish_time: int
+    data: bytes
+    channel: int = 0
+    sequence: int = 0
 
 
 @dataclass(frozen=True)
@@ -33,15 +40,8 @@ class Definition:
     type_hash: str = ''
 
 
-@dataclass(frozen=True)
-class StatedTopics:
-    """Topics of ``metadata.yaml`` in its order; definitions come without their text.
-
-    ``files`` is how many files these are in.
-    """
-
-    topics: tuple[tuple[str, Definition], ...]
-    files: int
+Description = Schema | Channel
+"""Record of an MCAP file without which messages cannot be read."""
 
 
 def describe(type_name: str, qos: str) -> Definition:
@@ -61,4 +61,67 @@ def describe(type_name: str, qos: str) -> Definition:
         text=message_definition(type_name).encode(),
         qos=qos,
         type_hash=type_hash(type_name),
+    )
+
+
+class Descriptions:
+    """Descriptions of channels by their numbers; of two that differ the first one counts."""
+
+    def __init__(self) -> None:
+        self._schemas: dict[int, Schema] = {}
+        self._channels: dict[int, Channel] = {}
+        self._made: dict[int, tuple[str, Definition]] = {}
+        self._added: dict[int, tuple[str, Definition]] = {}
+
+    def learn(self, records: Iterable[object]) -> None:
+        """Register schemas and channels among records."""
+        for record in records:
+            if isinstance(record, Schema):
+                self._schemas.setdefault(record.id, record)
+            elif isinstance(record, Channel):
+                self._channels.setdefault(record.id, record)
+        self._made.clear()
+
+    def add(self, number: int, topic: str, definition: Definition) -> None:
+        """Settle what a channel is of which the file does not say it."""
+        self._added[number] = topic, definition
+
+    def find(self, number: int) -> tuple[str, Definition] | None:
+        """Give topic and definition of a channel's messages; None if nothing describes it."""
+        if number in self._added:
+            return self._added[number]
+        channel = self._channels.get(number)
+        if number not in self._made and channel:
+            schema = self._schemas.get(channel.schema_id)
+            self._made[number] = channel.topic, channel_definition(channel, schema)
+        return self._made.get(number)
+
+    def lacking(self, numbers: Collection[int]) -> list[int]:
+        """Return those channels that are not described, or whose type is not."""
+        return [number for number in sorted(numbers) if not self._describes(number)]
+
+    def all(self) -> dict[int, tuple[str, Definition]]:
+        """Give topic and definition of all channels by their numbers."""
+        numbers = dict.fromkeys([*self._channels, *self._added])
+        return {number: pair for number in numbers if (pair := self.find(number))}
+
+    def records(self) -> list[Description]:
+        """Give all schemas and channels that were learnt."""
+        return [*self._schemas.values(), *self._channels.values()]
+
+    def _describes(self, number: int) -> bool:
+        channel = self._channels.get(number)
+        # Schema 0 says that there is none.
+        return channel is not None and channel.schema_id in (0, *self._schemas)
+
+
+def channel_definition(channel: Channel, schema: Schema | None) -> Definition:
+    """Definition of a channel, in the form common to all storages."""
+    return Definition(
+        type=schema.name if schema else '',
+        message_encoding=channel.message_encoding,
+        schema_encoding=schema.encoding if schema else '',
+        text=schema.data if schema else b'',
+        qos=channel.metadata.get('offered_qos_profiles', ''),
+        type_hash=channel.metadata.get('topic_type_hash', ''),
     )

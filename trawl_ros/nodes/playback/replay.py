@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from rclpy.qos import QoSProfile
 
-from trawl_ros.bags.reader import Bag, RawMessage
-from trawl_ros.bags.storage.stored import Definition
+from trawl_ros.bags.reader import Bag
+from trawl_ros.bags.storage.stored import Definition, RawMessage
 from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.cdr import STORE, type_hash

@@ -11,7 +11,6 @@ from hostile.mutations import mutated
 from hostile.target import Files, Target
 from trawl_ros.bags.logs.clock import WORDS
 from trawl_ros.bags.logs.import_log import import_log
-from trawl_ros.bags.logs.nmea import import_nmea
 from trawl_ros.core.errors import TrawlError
 
 CELLS = (
@@ -171,7 +170,7 @@ def read_table(given: Path, results: Path) -> None:
 def read_sentences(given: Path, results: Path) -> None:
     """Import a log of NMEA 0183, so that as much as may be is read."""
     results.mkdir()
-    import_nmea(given / 'log.nmea', given / 'mapping.yaml', results / 'bag', leave_out=True)
+    import_log(given / 'log.nmea', given / 'mapping.yaml', results / 'bag', leave_out=True)
 
 
 def _table(clock: str, encoding: str, skip: int) -> Files:

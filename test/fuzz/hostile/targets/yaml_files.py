@@ -12,7 +12,6 @@ from hypothesis.strategies import DrawFn, SearchStrategy
 from hostile.mutations import long, mutated
 from hostile.target import Files, Target, one_file
 from trawl_ros.bags.logs.mapping import load_mapping
-from trawl_ros.bags.logs.nmea_mapping import load_nmea_mapping
 from trawl_ros.core.resources import share_path
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.plan_table import plan_text, read_plan
@@ -189,6 +188,6 @@ TARGETS = (
     _target('scenario', 'scenarios', load_scenario, 'name'),
     _target('instruments', 'instruments', load_instruments, 'winch'),
     _target('csv-mapping', 'logs', load_mapping, 'clock'),
-    _target('nmea-mapping', 'logs', load_nmea_mapping, 'nmea'),
+    _target('nmea-mapping', 'logs', load_mapping, 'nmea'),
     _target('sentences', 'sentences', load_table, 'system'),
 )
