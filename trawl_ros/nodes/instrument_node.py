@@ -164,7 +164,7 @@ class InstrumentNode(TrawlNode, ABC):
         others = [row.name for row in INSTRUMENTS if row.name not in self.SAMPLES]
         return any(where == topic or where.startswith(f'{topic}/') for topic in others)
 
-    def _report(self, samples: Sequence[Sample]) -> None:
+    def _send_samples(self, samples: Sequence[Sample]) -> None:
         for sample in samples:
             self.send(*sample_message(self._sensor_effects(sample)))
 
@@ -203,14 +203,14 @@ class InstrumentNode(TrawlNode, ABC):
             stamp = stamp_of(message)
             if topic == OBSERVABLES:
                 self._plan.follow(stamp)
-                self._report(self._observing.observe(observables_truth(message), stamp))
+                self._send_samples(self._observing.observe(observables_truth(message), stamp))
                 return
             complete = self._joiner.add(topic, stamp, message)
             if complete is None:
                 return
             self._plan.follow(stamp)
             try:
-                self._report(self.observe(stamp, complete))
+                self._send_samples(self.observe(stamp, complete))
             except MessageError as reason:
                 self.refuse(topic, str(reason))
             self._progress.done(stamp)
