@@ -161,7 +161,8 @@ class InstrumentNode(TrawlNode, ABC):
         self._plan = FaultPlan(setup.faults, self._panel)
         self._by_parameter: dict[str, str] = {}
         self._take_parameter()
-        self._joiner = Joiner(self.TRUTH)
+        # Sensors of observables work by themselves: elsewhere truth may come without them.
+        self._joiner = Joiner([topic for topic in self.TRUTH if topic != OBSERVABLES])
         for topic in self.SAMPLES:
             self.advertise(topic)
         self.listen(FAULT_COMMAND, self._command_fault, STREAM)
@@ -230,10 +231,9 @@ class InstrumentNode(TrawlNode, ABC):
         others = [row.name for row in INSTRUMENTS if row.name not in self.SAMPLES]
         return any(where == topic or where.startswith(f'{topic}/') for topic in others)
 
-    def _observed(self, stamp: int, messages: dict[str, Any]) -> list[Sample]:
-        message = messages.get(OBSERVABLES)
-        known = None if message is None else observables_truth(message)
-        return self._observing.observe(known, stamp)
+    def _send_samples(self, samples: Sequence[Sample]) -> None:
+        for sample in samples:
+            self.send(*sample_message(self._sensor_effects(sample)))
 
     def _ready(self) -> Any:
         names = self.parameters['wait_for']
@@ -268,13 +268,16 @@ class InstrumentNode(TrawlNode, ABC):
                     'numbers of a tow'
                 )
             stamp = stamp_of(message)
+            if topic == OBSERVABLES:
+                self._plan.follow(stamp)
+                self._send_samples(self._observing.observe(observables_truth(message), stamp))
+                return
             complete = self._joiner.add(topic, stamp, message)
             if complete is None:
                 return
             self._plan.follow(stamp)
             try:
-                for sample in (*self.observe(stamp, complete), *self._observed(stamp, complete)):
-                    self.send(*sample_message(self._sensor_effects(sample)))
+                self._send_samples(self.observe(stamp, complete))
             except MessageError as reason:
                 self.refuse(topic, str(reason))
             self._progress.done(stamp)

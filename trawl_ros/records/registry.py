@@ -252,6 +252,8 @@ def changed(sample: SampleT, **attributes: object) -> SampleT:
 
 def with_numbers(sample: SampleT, numbers: Mapping[Field, float]) -> SampleT:
     """Return a sample with other numbers, in the sample's units."""
+    if not numbers:
+        return sample
     single = {one.attribute: value for one, value in numbers.items() if one.index is None}
     several: dict[str, list[float]] = {}
     for number, value in numbers.items():

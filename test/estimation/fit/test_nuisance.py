@@ -6,12 +6,19 @@ import numpy as np
 import pytest
 
 from trawl_ros.estimation.fit.calibration import tow_biases
-from trawl_ros.estimation.fit.error_terms import GROUP_OF, LONGER, TERMS, USUAL_LENGTH
+from trawl_ros.estimation.fit.error_terms import (
+    GROUP_OF,
+    GROUPS,
+    LONGER,
+    TERMS,
+    USUAL_LENGTH,
+)
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import linearise
 from trawl_ros.estimation.fit.nuisance import ALIKE, ROUNDS, reweighted
+from trawl_ros.records.channels import INPUTS
 
 NORMAL = 1e9
 """A limit that no error reaches, so that the loss is that of normal errors."""
@@ -26,7 +33,7 @@ def fit(sea, model, prior):
     del windows[3].means['vertical_opening']
     at = sea.TRUTH + 0.1 * sea.STD
     parts = tuple(linearise(model, sea.OBSERVABLES, window, at) for window in windows)
-    scales = tuple(np.linspace(0.7, 1.4, 7))
+    scales = tuple(np.linspace(0.7, 1.4, len(GROUPS)))
     return Fit(parts, at, scales, prior, EstimatorOptions(huber=NORMAL))
 
 
@@ -44,10 +51,10 @@ def dense(fit):
             covariance[row, :, row] += tow.inputs[i] @ tow.inputs[i].T
             for j, column in enumerate(tow.rows):
                 covariance[row, :, column] += tow.calibration[i] @ tow.calibration[j].T
-    models = np.zeros((number, channels, 7))
+    models = np.zeros((number, channels, len(GROUPS)))
     for tow in fit.errors:
         models[tow.rows] = tow.model
-    flat = models.reshape(-1, 7)
+    flat = models.reshape(-1, len(GROUPS))
     covariance = covariance.reshape(number * channels, -1) + flat @ flat.T
     covariance += np.diag(own.reshape(-1))
     there = present.reshape(-1)
@@ -132,7 +139,9 @@ def test_what_an_instrument_reads_too_high_is_found_per_tow(sea, model, prior):
         estimator.add(window)
     estimator.finish()
     biases = {(bias.tow, bias.channel): bias for bias in tow_biases(estimator._fit)}
-    assert len(biases) == 2 * len({term.channel for term in TERMS})
+    known = {term.channel for term in TERMS} & {*INPUTS, *sea.OBSERVABLES}
+    assert {channel for _, channel in biases} == known
+    assert len(biases) == 2 * len(known)
     for (_, _), bias in biases.items():
         assert 0.0 < bias.std <= bias.known * (1.0 + 1e-9)
     apart = biases[1, 'net_depth'].value - biases[0, 'net_depth'].value

@@ -19,6 +19,7 @@ from trawl_ros.lab.studies.identification.plant import Cut, Look
 from trawl_ros.lab.studies.identification.readings import (
     AS_STATED,
     KINDS,
+    SENSED,
     Sensors,
     steady_windows,
     wrong_by,
@@ -26,7 +27,7 @@ from trawl_ros.lab.studies.identification.readings import (
 from trawl_ros.lab.studies.identification.report import REPORT
 from trawl_ros.lab.studies.identification.rows import coverage_rows, held_out_rows, spread_rows
 from trawl_ros.lab.studies.identification.trial import EstimationTrial, Task, run_trial
-from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+from trawl_ros.records.channels import CHANNELS, INPUTS
 from trawl_ros.records.observables import OBSERVABLES
 
 PRIOR = board_prior(load_gear('kaifuha'))
@@ -102,7 +103,7 @@ def test_a_state_that_the_model_lacks_is_counted_and_left_out():
 
 def looks(number=3):
     chance = np.random.default_rng(9)
-    size = {name: CHANNELS[name].noise for name in MEASURED}
+    size = {name: CHANNELS[name].noise for name in SENSED}
     scale = np.array([size.get(name, 1.0) for name in OBSERVABLES])[:, None]
     return [
         Look(
@@ -122,7 +123,7 @@ def test_simulated_windows_have_the_covariance_that_the_bound_assumes():
     rest = []
     for window, look in zip(windows, seen * 800, strict=True):
         wrong = np.array([window.means[name] for name in INPUTS]) - look.inputs
-        measured = np.array([window.means[name] for name in MEASURED])
+        measured = np.array([window.means[name] for name in SENSED])
         rest.append(measured - look.values[ROWS] - look.by_inputs[ROWS] @ wrong)
     found = np.cov(np.reshape(rest, (800, -1)).T)
     expected = _covariance(seen, sensors)
@@ -143,7 +144,7 @@ def test_biases_of_a_tow_are_not_worn_down_by_more_windows():
 
 def test_noise_is_as_much_larger_than_stated_as_asked():
     sensors = wrong_by(0.3, np.random.default_rng(5))
-    assert {sensors.factor(name) for name in (*MEASURED, *INPUTS)} <= {0.7, 1.3}
+    assert {sensors.factor(name) for name in (*SENSED, *INPUTS)} <= {0.7, 1.3}
     loud = Sensors(dict.fromkeys(KINDS, 3.0))
     quiet, noisy = (
         [window.means['port_door_depth'] for window in

@@ -7,11 +7,11 @@ from scipy.linalg import block_diag
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.studies.identification.plant import Look
-from trawl_ros.lab.studies.identification.readings import Sensors
-from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+from trawl_ros.lab.studies.identification.readings import SENSED, Sensors
+from trawl_ros.records.channels import CHANNELS, INPUTS
 from trawl_ros.records.observables import OBSERVABLES
 
-ROWS = [OBSERVABLES.index(name) for name in MEASURED]
+ROWS = [OBSERVABLES.index(name) for name in SENSED]
 
 
 def information(tows: Sequence[Sequence[Look]], sensors: Sensors) -> FloatArray:
@@ -47,12 +47,12 @@ def _covariance(looks: Sequence[Look], sensors: Sensors) -> FloatArray:
                     for name in names
                 ]
             )
-            for names in (MEASURED, INPUTS)
+            for names in (SENSED, INPUTS)
         )
         sensitivity = look.by_inputs[ROWS]
         blocks.append(own + sensitivity @ inputs @ sensitivity.T)
     columns = []
-    for name in (*MEASURED, *INPUTS):
+    for name in (*SENSED, *INPUTS):
         channel, factor = CHANNELS[name], sensors.factor(name)
         offset = np.concatenate([_effect(look, name) for look in looks])
         scale = np.concatenate([_effect(look, name) * _size(look, name) for look in looks])
@@ -66,7 +66,7 @@ def _effect(look: Look, name: str) -> FloatArray:
     """Sensitivity (k,) of the residuals to an offset of a channel or input."""
     if name in INPUTS:
         return -look.by_inputs[ROWS, INPUTS.index(name)]
-    return np.array([float(name == other) for other in MEASURED])
+    return np.array([float(name == other) for other in SENSED])
 
 
 def _size(look: Look, name: str) -> float:

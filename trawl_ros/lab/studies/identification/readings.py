@@ -76,7 +76,10 @@ KINDS: Mapping[str, SensorKind] = {
 """As ``bags/sea_trial.yaml`` has them, SI, of the spread what is left without its false echoes and
 gaps; the opening as read off the sonar's image."""
 
-NAMES = (*MEASURED, *INPUTS)
+SENSED = tuple(name for name in MEASURED if group_of(name) in KINDS)
+"""Channels of these sensors."""
+
+NAMES = (*SENSED, *INPUTS)
 
 
 @dataclass(frozen=True)

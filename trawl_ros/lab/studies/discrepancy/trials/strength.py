@@ -26,7 +26,7 @@ from trawl_ros.lab.studies.discrepancy.hidden_effects.hidden import Hidden
 from trawl_ros.lab.studies.discrepancy.trials.plant import Plant
 from trawl_ros.lab.studies.discrepancy.trials.tows import FULL, BlindTrialPlan
 from trawl_ros.lab.studies.identification.plant import Look
-from trawl_ros.records.channels import MEASURED
+from trawl_ros.lab.studies.identification.readings import SENSED
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
@@ -93,7 +93,7 @@ class Likelihood:
     def _sigmas(self, hidden: Hidden, size: float, beside_catalogue: bool) -> float:
         """Strength of an effect in standard deviations."""
         changed = self.plant.towed([(hidden, size)], self.plan)
-        rows = [OBSERVABLES.index(name) for name in MEASURED]
+        rows = [OBSERVABLES.index(name) for name in SENSED]
         columns = [
             (there.values - clean.values)[rows][:, None]
             for there, clean in zip(_flat(changed), self._clean, strict=True)
@@ -156,7 +156,7 @@ def likelihood(
         Tows of the trial.
     """
     deciding = {window.index for window in split(windows, frozenset(range(plan.baseline))).deciding}
-    rows = [OBSERVABLES.index(name) for name in MEASURED]
+    rows = [OBSERVABLES.index(name) for name in SENSED]
     parts = []
     states = [state for tow in plan.tows for state in tow.states]
     for window, state in zip(windows, states, strict=True):
@@ -166,7 +166,7 @@ def likelihood(
         parts.append(
             Linearised(
                 window=window,
-                channels=MEASURED,
+                channels=SENSED,
                 at=plant.coefficients,
                 inputs=np.array(clean.look.inputs),
                 net=np.ones(2),
