@@ -17,10 +17,6 @@ STUDIES: Mapping[str, tuple[str, str]] = MappingProxyType(
             'lab.commands.studies.chaos',
             'Stop and kill nodes, fill the disk, and see what is left of a tow.',
         ),
-        'sonar': (
-            'lab.commands.studies.sonar',
-            "Set openings read off the trawl sonar's image beside the truth.",
-        ),
         'identification': (
             'lab.commands.studies.identification',
             'Ask of many trials what intervals and predictions are worth.',
@@ -32,10 +28,6 @@ STUDIES: Mapping[str, tuple[str, str]] = MappingProxyType(
         'instruments': (
             'lab.commands.studies.instruments',
             'Set simulated range sensors beside those of a survey.',
-        ),
-        'counters': (
-            'lab.commands.studies.counters',
-            'Diagnose a trial whose winch counters err as measured ones did.',
         ),
         'flume': (
             'lab.commands.studies.flume',
@@ -56,10 +48,6 @@ STUDIES: Mapping[str, tuple[str, str]] = MappingProxyType(
         'onset': (
             'lab.commands.studies.onset',
             'Let effects begin during tows, and count how soon they are found.',
-        ),
-        'sailing': (
-            'lab.commands.studies.sailing',
-            'Sail trials that run themselves, beside planned ones.',
         ),
     }
 )
