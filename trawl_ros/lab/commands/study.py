@@ -29,10 +29,6 @@ STUDIES: Mapping[str, tuple[str, str]] = MappingProxyType(
             'lab.commands.studies.instruments',
             'Set simulated range sensors beside those of a survey.',
         ),
-        'flume': (
-            'lab.commands.studies.flume',
-            'Set a net that is held in a flume tank beside the model.',
-        ),
         'hostile': (
             'lab.commands.studies.hostile',
             'Send messages that make no sense to each subscription.',

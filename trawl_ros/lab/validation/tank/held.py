@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.studies.flume.states import BRIDLE, SHACKLE, SWEEP, TRUNCATED, FlumeState
+from trawl_ros.lab.validation.tank.states import BRIDLE, SHACKLE, SWEEP, TRUNCATED, FlumeState
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.net.twine_drag import VISCOSITY

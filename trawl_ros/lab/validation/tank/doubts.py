@@ -8,13 +8,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.gear.net_plan import PieceRecord
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.doubts import need_in_words
 from trawl_ros.lab.report.page import TextTable
-from trawl_ros.lab.studies.flume.held import HeldNet, held
-from trawl_ros.lab.studies.flume.states import FlumeState
+from trawl_ros.lab.validation.tank.held import HeldNet, held
+from trawl_ros.lab.validation.tank.states import FlumeState
 
 SHOWN, SLOW = '64.0', '67.0'
 """Trials that are solved for each doubt: that by which twine was tuned, and the slowest of its
@@ -130,15 +129,12 @@ class Doubted:
     slow: dict[float, HeldNet | None]
 
 
-def doubted(
-    gear: GearRecord, states: Sequence[FlumeState], on_progress: OnProgress = ignore
-) -> list[Doubted]:
+def doubted(gear: GearRecord, states: Sequence[FlumeState]) -> list[Doubted]:
     """Solve both trials at both ends of every doubt."""
     by_trial = {state.trial: state for state in states}
     if not {SHOWN, SLOW} <= set(by_trial):
         return []
     gear = gear.refined(net=COARSE)
-    done = step_counter('doubting', 2 + sum(len(doubt.factors) for doubt in DOUBTS), on_progress)
 
     def solved(doubt: Doubt | None, factor: float, trial: str) -> HeldNet | None:
         changed = gear if doubt is None else doubt.change(gear, factor)
@@ -147,17 +143,13 @@ def doubted(
         except NoSteadyState:
             return None
 
-    as_is = {}
-    for trial in (SHOWN, SLOW):
-        as_is[trial] = solved(None, 1.0, trial)
-        done()
+    as_is = {trial: solved(None, 1.0, trial) for trial in (SHOWN, SLOW)}
     found = []
     for doubt in DOUBTS:
         one = Doubted(doubt, {1.0: as_is[SHOWN]}, {1.0: as_is[SLOW]})
         for factor in doubt.factors:
             one.shown[factor] = solved(doubt, factor, SHOWN)
             one.slow[factor] = solved(doubt, factor, SLOW)
-            done()
         found.append(one)
     return found
 

@@ -1,4 +1,4 @@
-"""States of a net in a flume tank beside the model, and their report."""
+"""States of a net in a flume tank compared with the model."""
 
 import math
 from collections.abc import Sequence
@@ -8,19 +8,24 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+import trawl_ros
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, within
-from trawl_ros.lab.report.page import Page, Section, TextTable, write_page
-from trawl_ros.lab.studies.flume.doubts import doubted, doubts_table
-from trawl_ros.lab.studies.flume.held import SCALE, HeldNet, held, led_to
-from trawl_ros.lab.studies.flume.states import TRAWL, TUNED, FlumeState
+from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.validation.cases import ValidationCase
+from trawl_ros.lab.validation.tank.doubts import doubted, doubts_table
+from trawl_ros.lab.validation.tank.held import SCALE, HeldNet, held, led_to
+from trawl_ros.lab.validation.tank.states import TRAWL, TUNED, FlumeState, read_states
 from trawl_ros.report.pictures import Drawing
 
-REPORT = 'flume.md'
 GEAR = 'flume_83_112'
+
+TABLE = (
+    Path(trawl_ros.__file__).parents[2] / 'shared/data/noaa_trawlmetrics/flume_tank_2025_2026.csv'
+)
+"""Table of the measured states, in a folder beside the checkout."""
 
 MEDIAN, EXPONENT = 10.0, 0.1
 """Largest median error (%) asked for, and largest difference of the exponent of tension."""
@@ -65,18 +70,14 @@ class Compared:
         return math.inf if self.net is None else 100.0 * (self.modelled(quantity) / measured - 1.0)
 
 
-def compared(
-    gear: GearRecord, states: Sequence[FlumeState], on_progress: OnProgress = ignore
-) -> list[Compared]:
+def compared(gear: GearRecord, states: Sequence[FlumeState]) -> list[Compared]:
     """Find the net of each state: cold, and where that fails led from those most like it."""
-    done = step_counter('solving', len(states), on_progress)
     found = {}
     for number, state in enumerate(states):
         try:
             found[number] = Compared(state, held(gear, state))
         except NoSteadyState as reason:
             found[number] = Compared(state, None, str(reason))
-        done()
     known = [one for one in found.values() if one.net is not None]
     for number, one in found.items():
         if one.net is None:
@@ -113,120 +114,109 @@ def exponent(pairs: Sequence[tuple[float, float]]) -> float:
     return float(np.polyfit(speeds, tensions, 1)[0])
 
 
-def rows_of(every: Sequence[Compared]) -> list[MeasuredValue]:
-    """Rows of the report."""
+def checks(every: Sequence[Compared]) -> tuple[MeasuredValue, ...]:
+    """Checks of the case."""
     counts = [one for one in every if one.state.counts]
-    errors = {
-        quantity: [one.error(quantity) for one in counts if not math.isnan(one.error(quantity))]
-        for quantity in QUANTITIES
-    }
-    together = [abs(error) for some in errors.values() for error in some]
-    rows = [
+    errors = [abs(error) for some in _errors(counts).values() for error in some]
+    series = _series(every)
+    measured = exponent([(one.state.speed, one.measured('tension')) for one in series])
+    modelled = exponent([(one.state.speed, one.modelled('tension')) for one in series])
+    return (
         MeasuredValue(
             'median error of spread, height and tension',
-            float(np.median(together)) if together else math.nan,
+            float(np.median(errors)) if errors else math.nan,
             '%',
             at_most(MEDIAN),
-            f'{len(together)} values of {len(counts)} states that count',
-        )
-    ]
-    for quantity, some in errors.items():
-        rows.append(
-            MeasuredValue(
-                f'median error of {quantity}',
-                float(np.median(np.abs(some))) if some else math.nan,
-                '%',
-                note=f'{len(some)} values; median with its sign {np.median(some):+.1f} %'
-                if some
-                else 'none was measured',
-            )
-        )
-    series = [one for one in every if one.state.trial in SERIES and one.net is not None]
-    measured = exponent([(one.state.speed, one.measured('tension')) for one in series])
-    ours = exponent([(one.state.speed, one.modelled('tension')) for one in series])
-    rows.append(
+            f'{len(errors)} values of {len(counts)} states that count: {_by_quantity(counts)}',
+            key='median_error',
+        ),
         MeasuredValue(
             'exponent of tension over speed',
-            ours,
+            modelled,
             target=within(EXPONENT, of=measured),
             note=f'trials {", ".join(one.state.trial for one in series)}',
-        )
-    )
-    rubbed = [
-        (one.state.speed, one.modelled('tension') + FRICTION * (one.net.floor + one.net.laid))
-        for one in series
-        if one.net is not None
-    ]
-    rows.append(
-        MeasuredValue(
-            f'exponent with friction of the floor, {FRICTION:g} of what it carries',
-            exponent(rubbed),
-            note='Not in the model.',
-        )
-    )
-    rows.append(
+            key='exponent',
+        ),
         MeasuredValue(
             'states that have a steady state in the model',
             float(sum(one.net is not None for one in every)),
             '',
             at_least(float(len(every))),
             '; '.join(f'trial {one.state.trial}: {one.refusal}' for one in every if one.refusal),
-        )
-    )
-    shares = [one.net.lower_share for one in counts if one.net is not None]
-    rows.append(
-        MeasuredValue(
-            'median share of the lower bridles in the pull of all',
-            100.0 * float(np.median(shares)) if shares else math.nan,
-            '%',
-            note='The tank has only the sum. The lower, longer ones are nearly slack in the model.',
-        )
-    )
-    floor = [one.net.floor for one in every if one.net is not None]
-    rows.append(
-        MeasuredValue(
-            'least that the floor carries of the footrope',
-            min(floor, default=math.nan),
-            'N',
-            note='Where it is negative the floor would have to pull.',
-        )
-    )
-    return rows
-
-
-def write_flume(
-    folder: Path,
-    every: Sequence[Compared],
-    rows: Sequence[MeasuredValue],
-    doubts: Sequence[TextTable] = (),
-) -> list[MeasuredValue]:
-    """Write ``flume.json``, ``.md``, ``.html`` and ``.png``."""
-    page = Page(
-        name='flume',
-        title='A net in a flume tank',
-        command='trawl study flume --table FILE',
-        method=(
-            f'Steady states of the survey bottom trawl {TRAWL} in a flume tank, as full-scale '
-            f'figures, beside `{GEAR}`, held by its pulling points as far apart and as high above '
-            'the floor as they were. The legs of the doors were not in the tank, as the report of '
-            'the test says; it worked the spread of doors out from the bridle angle, and from both '
-            'the pulling points are found again. Counts of its meshes and its twines were '
-            'published nowhere and are assumed; nothing is tuned. Trial '
-            f'{", ".join(TUNED)}, by which twine was once set, does not count. '
-            'In no state at hand is the footrope known to be off the ground: the floor carries '
-            'legs and lower bridles, and so much of the footrope that its middle lies on it, '
-            'without friction. What counts was chosen before anything was solved with the gear '
-            'as it ships: states with standard bridles, normal legs and an empty codend. '
-            f'The tank has a net 1:{SCALE} in slow water, where thin twine has more drag, and the '
-            'more the slower it is (Choo and Casarella 1971): so has the model, but for knots and '
-            'ropes.'
+            key='steady_states',
         ),
     )
-    drawing = Drawing('flume', 'Model over tank; open marks do not count.', _figure(every))
-    sections = [Section('States', rows, tables=(_table(every),))]
-    if doubts:
-        sections.append(Section('Why: what is assumed', tables=tuple(doubts)))
-    return write_page(folder, page, sections, [drawing])
+
+
+def _errors(counts: Sequence[Compared]) -> dict[str, list[float]]:
+    return {
+        quantity: [one.error(quantity) for one in counts if not math.isnan(one.error(quantity))]
+        for quantity in QUANTITIES
+    }
+
+
+def _by_quantity(counts: Sequence[Compared]) -> str:
+    """Median error of each quantity, with its sign."""
+    return ', '.join(
+        f'{quantity} {np.median(some):+.1f} %' if some else f'{quantity} not measured'
+        for quantity, some in _errors(counts).items()
+    )
+
+
+def _series(every: Sequence[Compared]) -> list[Compared]:
+    return [one for one in every if one.state.trial in SERIES and one.net is not None]
+
+
+def further_table(every: Sequence[Compared]) -> TextTable:
+    """Figures that explain the checks, of which nothing is asked."""
+    nets = [one.net for one in every if one.net is not None]
+    shares = [one.net.lower_share for one in every if one.state.counts and one.net is not None]
+    rubbed = exponent(
+        [
+            (one.state.speed, one.modelled('tension') + FRICTION * (one.net.floor + one.net.laid))
+            for one in _series(every)
+            if one.net is not None
+        ]
+    )
+    share = 100.0 * float(np.median(shares)) if shares else math.nan
+    floor = min((net.floor for net in nets), default=math.nan)
+    return TextTable(
+        'Further figures',
+        ('what', 'value', 'note'),
+        (
+            (
+                f'exponent with friction of the floor, {FRICTION:g} of what it carries',
+                f'{rubbed:.3f}',
+                'Not in the model.',
+            ),
+            (
+                'median share of the lower bridles in the pull of all',
+                f'{share:.1f} %',
+                'The tank has only the sum. In the model the longer, lower ones are nearly slack.',
+            ),
+            (
+                'least that the floor carries of the footrope',
+                f'{floor:.0f} N',
+                'Where it is negative the floor would have to pull.',
+            ),
+        ),
+    )
+
+
+METHOD = (
+    f'Steady states of the survey bottom trawl {TRAWL} in a flume tank, as full-scale figures, '
+    f'compared with `{GEAR}`, which is held by its pulling points as far apart and as high above '
+    'the floor as they were. The legs of the doors were not in the tank, as the report of the test '
+    'says; it worked the spread of doors out from the bridle angle, and from both the pulling '
+    'points are found again. Counts of its meshes and its twines were published nowhere and are assumed; '
+    f'nothing is tuned. Trial {", ".join(TUNED)}, by which twine was once set, does not count. '
+    'In no state at hand is the footrope known to be off the ground: the floor carries legs and '
+    'lower bridles, and so much of the footrope that its middle lies on it, without friction. What '
+    'counts was chosen before anything was solved with the gear as it ships: states with standard '
+    'bridles, normal legs and an empty codend. '
+    f'The tank has a net 1:{SCALE} in slow water, where thin twine has more drag, and the more the '
+    'slower it is (Choo and Casarella 1971). So has the model, but for knots and ropes.'
+)
 
 
 def _table(every: Sequence[Compared]) -> TextTable:
@@ -295,22 +285,31 @@ def _figure(every: Sequence[Compared]) -> Figure:
     return figure
 
 
-def run_flume(
-    states: Sequence[FlumeState], folder: Path, on_progress: OnProgress = ignore
-) -> list[MeasuredValue]:
-    """Solve all states and write the page.
+SMALL = 3
+"""States of the small version, with a coarse net."""
 
-    Parameters
-    ----------
-    states
-        As measured.
-    folder
-        Takes ``flume.json``, ``.md``, ``.html`` and ``.png``.
-    on_progress
-        Called after each state.
+
+def run(small: bool) -> Findings:
+    """Solve all states of the table, and every doubt about assumed numbers.
+
+    Without the table nothing is run, and a sentence says so.
     """
-    gear = load_gear(GEAR)
-    every = compared(gear, states, on_progress)
-    doubts = doubted(gear, states, on_progress)
-    tables = [doubts_table(doubts, states)] if doubts else []
-    return write_flume(folder, every, rows_of(every), tables)
+    if not TABLE.is_file():
+        why = (
+            f'{TABLE.name}: not found in shared/data beside the checkout, so nothing was compared.'
+        )
+        return Findings((), tables=(TextTable('Not run', ('why',), ((why,),)),), text=why)
+    gear, states = load_gear(GEAR), read_states(TABLE)
+    if small:
+        netting = gear.netting.model_copy(update={'around': 24})
+        gear = gear.model_copy(update={'netting': netting})
+        states = [state for state in states if state.trial in SERIES][:SMALL]
+    every = compared(gear, states)
+    doubts = [] if small else doubted(gear, states)
+    tables = [_table(every), further_table(every)]
+    tables += [doubts_table(doubts, states)] if doubts else []
+    drawing = Drawing('flume', 'Model over tank; open marks do not count.', _figure(every))
+    return Findings(checks(every), (drawing,), tuple(tables), METHOD)
+
+
+CASE = ValidationCase('flume', 'A net in a flume tank', run)

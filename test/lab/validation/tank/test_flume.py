@@ -2,20 +2,16 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
-from trawl_ros.cli.main import trawl
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.studies.flume.doubts import DOUBTS, Doubted, doubts_table
-from trawl_ros.lab.studies.flume.held import PRECISE, held, led_to
-from trawl_ros.lab.studies.flume.states import BRIDLE, SHACKLE, FlumeState, read_states
-from trawl_ros.lab.studies.flume.study import Compared, exponent, rows_of
-
-MEASURED = Path(__file__).parents[5] / 'shared/data/noaa_trawlmetrics/flume_tank_2025_2026.csv'
+from trawl_ros.lab.validation.tank import flume
+from trawl_ros.lab.validation.tank.doubts import DOUBTS, Doubted, doubts_table
+from trawl_ros.lab.validation.tank.flume import TABLE, Compared, checks, exponent, further_table
+from trawl_ros.lab.validation.tank.held import PRECISE, held, led_to
+from trawl_ros.lab.validation.tank.states import BRIDLE, SHACKLE, FlumeState, read_states
 
 TEXT = """\
 trial,trawl,bridles,bridle_length,catch,pulling_point_elevation_mm,towing_speed_kn,\
@@ -52,9 +48,6 @@ def test_what_is_no_such_table_is_refused(tmp_path, text):
     path.write_text(text)
     with pytest.raises(TrawlError, match=r'tank\.csv: .*expected'):
         read_states(path)
-    words = ['study', 'flume', '--table', str(path), '--out', str(tmp_path / 'out')]
-    assert CliRunner().invoke(trawl, words).exit_code == 1
-    assert not (tmp_path / 'out').exists()
 
 
 @pytest.fixture(scope='module')
@@ -79,15 +72,31 @@ def test_pulling_points_further_apart_open_the_wings_and_lower_the_mouth(coarse)
     assert far.height < near.height
 
 
-def test_rows_tell_errors_and_the_exponent(coarse):
+def test_checks_tell_errors_and_the_exponent(coarse):
     net = held(coarse, STATE)
     same = replace(STATE, spread=net.spread, height=net.height, tension=1.2 * net.tension)
-    rows = {row.what: row for row in rows_of([Compared(same, net), Compared(STATE, None, 'no')])}
-    assert rows['median error of tension'].value == math.inf
-    rows = {row.what: row for row in rows_of([Compared(same, net)])}
-    assert rows['median error of spread'].value == pytest.approx(0.0)
-    assert rows['median error of tension'].value == pytest.approx(100.0 / 6.0)
+    rows = {row.key: row for row in checks([Compared(same, net), Compared(same, None, 'no')])}
+    assert rows['median_error'].value == math.inf
+    assert not rows['steady_states'].ok
+    rows = {row.key: row for row in checks([Compared(same, net)])}
+    assert rows['median_error'].value == pytest.approx(0.0)
+    assert 'tension -16.7 %' in rows['median_error'].note
     assert exponent([(1.0, 3.0), (2.0, 12.0)]) == pytest.approx(2.0)
+    assert f'{net.floor:.0f} N' in further_table([Compared(same, net)]).rows[2]
+
+
+def test_without_the_table_a_sentence_says_that_nothing_was_run(tmp_path, monkeypatch):
+    monkeypatch.setattr(flume, 'TABLE', tmp_path / 'tank.csv')
+    found = flume.run(True)
+    assert found.rows == ()
+    assert 'tank.csv: not found' in found.text
+
+
+@pytest.mark.skipif(not TABLE.is_file(), reason='the measured states are not beside this')
+def test_the_small_version_solves_some_of_the_measured_states():
+    found = flume.run(True)
+    assert {row.key for row in found.rows} == {'median_error', 'exponent', 'steady_states'}
+    assert len(found.tables) == 2
 
 
 def test_a_doubt_changes_its_number_and_tells_what_the_height_needs(coarse):
@@ -107,9 +116,9 @@ def test_a_doubt_changes_its_number_and_tells_what_the_height_needs(coarse):
     assert table.rows[2][2:7] == ('–', '–', '–', '–', 'not enough')
 
 
-@pytest.mark.skipif(not MEASURED.is_file(), reason='the measured states are not beside this')
+@pytest.mark.skipif(not TABLE.is_file(), reason='the measured states are not beside this')
 def test_the_measured_states_are_those_that_were_chosen():
-    states = read_states(MEASURED)
+    states = read_states(TABLE)
     assert len(states) == 38
     counting = [state.trial for state in states if state.counts]
     assert counting == ['1.0', '2.0', '3.0', '4.0', '5.0', '6.0', '8.0', '9.0', '10.0',
