@@ -8,13 +8,13 @@ from click.testing import CliRunner
 
 from trawl_ros.cli.main import trawl
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import with_other_law
-from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import CAUSES
-from trawl_ros.lab.studies.discrepancy.trials.course import quasi_steady
-from trawl_ros.lab.studies.discrepancy.trials.plant import Plant
-from trawl_ros.lab.studies.discrepancy.trials.recording import record_tows
-from trawl_ros.lab.studies.discrepancy.trials.tows import BlindTrialPlan, PlannedTow
-from trawl_ros.lab.studies.identification.readings import AS_STATED
+from trawl_ros.lab.trials.course import quasi_steady
+from trawl_ros.lab.trials.hidden_effects.on_deck import with_other_law
+from trawl_ros.lab.trials.hidden_effects.other_keys import CAUSES
+from trawl_ros.lab.trials.plant import Plant
+from trawl_ros.lab.trials.readings import AS_STATED
+from trawl_ros.lab.trials.recording import record_tows
+from trawl_ros.lab.trials.tows import BlindTrialPlan, PlannedTow
 from trawl_ros.model.gear_model import build_model
 
 GEAR = 'kaifuha'

@@ -38,9 +38,7 @@ def test_a_full_disk_behind_the_standard_output(arguments: list[str], tmp_path: 
     [
         'tow nowhere', 'identify nowhere', 'diagnose nowhere', 'plan-trial nowhere',
         'plot nowhere', 'bag export nowhere', 'import-log {log} --mapping door_test_haul_log',
-        'validate', 'benchmark', 'study soak', 'study chaos',
-        'study identification', 'study discrepancy',
-        'study hostile', 'study robustness', 'demo',
+        'validate', 'benchmark', 'demo',
     ],
 )  # fmt: skip
 def test_a_folder_that_cannot_be_written_is_told_before_the_work(words, place, tmp_path) -> None:

@@ -1,0 +1,60 @@
+"""Study of fault injection: a tow undisturbed, the same with faults, and the recorder killed."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from endurance.chaos.alike import estimate_alike
+from endurance.chaos.kills import Kills, run_kills
+from endurance.chaos.plan import Plan, faults_of
+from endurance.chaos.tow import DisturbedTow, run_tow
+from endurance.long_tow import COARSEST
+from trawl_ros.core.files import made_folder
+from trawl_ros.core.progress import OnProgress
+from trawl_ros.lab.trials.linearised_plant import MeshResolution
+
+
+@dataclass(frozen=True)
+class Chaos:
+    """Results of the tow without faults and with them, and of the killed recorders.
+
+    ``alike`` has the coefficients by name from those stretches of the tow without faults that the
+    other has windows of.
+    """
+
+    plan: Plan
+    calm: DisturbedTow
+    wild: DisturbedTow
+    kills: Kills
+    alike: Mapping[str, float] = field(default_factory=dict)
+
+
+def run_chaos(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[[], bool]) -> Chaos:
+    """Run all three, each node as a process of its own.
+
+    Parameters
+    ----------
+    plan
+        With the hours of a tow and the number of kills.
+    folder
+        Takes what the nodes say; bags lie there for a while.
+    on_progress
+        Called with the data time (s) or the number of kills that is reached.
+    stop
+        Asked now and then whether to end early; what was seen until then counts.
+
+    Raises
+    ------
+    NodeFailed
+        If nodes cannot be started.
+    """
+    made_folder(folder)
+    calm = run_tow(plan, [], 'undisturbed', folder, on_progress, stop)
+    wild = (
+        DisturbedTow()
+        if stop()
+        else run_tow(plan, faults_of(plan), 'chaos', folder, on_progress, stop)
+    )
+    kills = Kills((), 0.0) if stop() else run_kills(plan, folder, on_progress, stop)
+    alike = estimate_alike(calm.windows, wild.windows, MeshResolution(COARSEST).model(plan.gear))
+    return Chaos(plan, calm, wild, kills, alike)
