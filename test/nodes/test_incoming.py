@@ -5,8 +5,8 @@ import itertools
 
 import numpy as np
 import pytest
-from endurance.hostile_messages.mutations import hostile_bytes
 
+from endurance.hostile_messages.mutations import hostile_bytes
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.limits import IMAGE_BYTES, MESSAGE_BYTES
 from trawl_ros.core.time import SECOND

@@ -7,7 +7,6 @@ import pytest
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
 from endurance.stranger import Stranger  # noqa: E402
-
 from trawl_ros.core.time import SECOND  # noqa: E402
 from trawl_ros.messages.cdr import deserialize  # noqa: E402
 from trawl_ros.messages.stamps import from_time, stamp_of  # noqa: E402

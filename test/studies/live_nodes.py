@@ -2,16 +2,18 @@
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import psutil
 
 from trawl_ros.core.progress import OnProgress, WorkProgress
 from trawl_ros.core.resources import share_path
 from trawl_ros.core.time import SECOND
+from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.running.monitor import Monitor
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes, Value
@@ -188,3 +190,19 @@ def live_nodes(
         processes.stop(*nodes)
     shares = used.of_core() if used else dict.fromkeys(nodes, math.nan)
     return LiveNodes(shares, tuple(delays), tuple(in_motion), windows, used.wall_s if used else 0.0)
+
+
+def delay_row(
+    what: str, delays_s: Sequence[float], most_s: float, latest: str, more: str = ''
+) -> MeasuredValue:
+    """Row of the latest of some delays; without any it is a miss."""
+    delays = np.array(delays_s)
+    least, most = (delays.min(), delays.max()) if len(delays) else (math.nan, math.nan)
+    note = f'the latest of {len(delays)}{latest}; least and most{more}'
+    target = at_most(most_s)
+    return MeasuredValue(what, float(most), 's', target, note, float(least), float(most))
+
+
+def share_row(what: str, found: LiveNodes, most: float, note: str) -> MeasuredValue:
+    """Row of the share of a core of all nodes together."""
+    return MeasuredValue(what, sum(found.shares.values()), '%', at_most(most), note)

@@ -1,6 +1,5 @@
 """Computing cost of the identification: a bag replayed at once, and the node in real time."""
 
-import math
 import os
 import resource
 import subprocess
@@ -11,14 +10,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.resources import share_path
 from trawl_ros.core.time import SECOND
-from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
+from trawl_ros.lab.report.measured import MeasuredValue, at_least
 from trawl_ros.nodes.playback.excerpt import Excerpt
 
 if TYPE_CHECKING:
@@ -107,23 +104,20 @@ def replay_rows(steady: Replay, motion: Replay) -> list[MeasuredValue]:
 
 def live_rows(found: 'LiveNodes') -> list[MeasuredValue]:
     """Delay of estimates, and the node's share of a core."""
-    delays = np.array(found.delays_s)
-    there = len(delays) > 0
+    # It needs ROS 2, which the other figures do without.
+    from studies.live_nodes import delay_row, share_row
+
     return [
-        MeasuredValue(
+        delay_row(
             "node in real time: estimate after its window's end",
-            float(delays.max()) if there else math.nan,
-            's',
-            at_most(LATEST_S),
-            f'the latest of {len(delays)} windows; least and most',
-            low=float(delays.min()) if there else math.nan,
-            high=float(delays.max()) if there else math.nan,
+            found.delays_s,
+            LATEST_S,
+            ' windows',
         ),
-        MeasuredValue(
+        share_row(
             'node in real time: share of a core',
-            found.shares[NODE],
-            '%',
-            at_most(MOST_OF_CORE),
+            found,
+            MOST_OF_CORE,
             f'mean over {found.wall_s / 60.0:.1f} min of the sample trial',
         ),
     ]

@@ -1,12 +1,12 @@
 """Figures of the trials: coverage, spread beside its bound, errors on tows left out."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import binomtest
 
 from studies.coverage.trial import EstimationTrial
+from studies.rates import AGAIN, figure_row, interval, rate
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.parameters import ParameterVector
@@ -25,10 +25,6 @@ MOST_ERROR = {'door_spread': 2.4, 'door_depth': 2.2, 'net_depth': 3.7, 'warp_ten
 OVER_FLOOR = 1.2
 """Largest allowed ratio to the errors of a perfect model."""
 
-DRAWN_AGAIN = 1000
-AGAIN = 'interval by drawing trials again'
-SEED = 7
-
 
 def coverage_rows(
     trials: Sequence[EstimationTrial], series: str, *, asked: bool
@@ -43,34 +39,21 @@ def coverage_rows(
     target = between(*COVERAGE) if asked else None
     truth, low, high = (_array(trials, name) for name in ('truth', 'low', 'high'))
     inside = (low <= truth) & (truth <= high)
-    low_all, high_all = interval(lambda some: np.array(100.0 * inside[some].mean()), len(trials))
     rows = [
-        MeasuredValue(
+        figure_row(
             f'{series}: 95 % intervals that cover the truth',
-            float(100.0 * inside.mean()),
+            lambda some: float(100.0 * inside[some].mean()),
+            len(trials),
             '%',
             target,
             f'all twelve of {len(trials)} trials; {AGAIN}',
-            low=float(low_all),
-            high=float(high_all),
         )
     ]
     if not asked:
         return rows
     for column, name in enumerate(COEFFICIENTS):
-        count = int(inside[:, column].sum())
-        ends = binomtest(count, len(trials)).proportion_ci(method='exact')
-        rows.append(
-            MeasuredValue(
-                f'{series}: intervals of {name} that cover the truth',
-                100.0 * count / len(trials),
-                '%',
-                target,
-                'binomial 95 % interval (Clopper and Pearson)',
-                low=100.0 * ends.low,
-                high=100.0 * ends.high,
-            )
-        )
+        what = f'{series}: intervals of {name} that cover the truth'
+        rows.append(rate(what, inside[:, column].tolist(), least=COVERAGE[0], most=COVERAGE[1]))
     return rows
 
 
@@ -217,16 +200,3 @@ def board_rows(trials: Sequence[EstimationTrial]) -> list[MeasuredValue]:
 
 def _array(trials: Sequence[EstimationTrial], name: str) -> FloatArray:
     return np.array([getattr(trial, name) for trial in trials], dtype=float)
-
-
-def interval(
-    figures: Callable[[IntArray], FloatArray], number: int
-) -> tuple[FloatArray, FloatArray]:
-    """Bootstrap 95 % interval of figures (n,) over so many trials: lower and upper ends."""
-    if number < 2:
-        nothing = np.full(figures(np.arange(number)).shape, np.nan)
-        return nothing, nothing
-    chance = np.random.default_rng(SEED)
-    found = np.array([figures(chance.integers(number, size=number)) for _ in range(DRAWN_AGAIN)])
-    low, high = np.percentile(found, (2.5, 97.5), axis=0)
-    return low, high

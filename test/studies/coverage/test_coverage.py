@@ -5,11 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from studies.coverage.bound import ROWS, _covariance, information
 from studies.coverage.costs import NODE, Replay, live_rows, replay_rows
 from studies.coverage.rows import coverage_rows, held_out_rows, spread_rows
 from studies.coverage.study import STUDY, CoveragePlan
-from studies.coverage.trial import EstimationTrial, run_trial
+from studies.coverage.trial import ROWS, EstimationTrial, _covariance, information, run_trial
 from studies.harness import Work, run_study
 from studies.kept import KeptTrials
 from trawl_ros.estimation.from_gear import board_prior

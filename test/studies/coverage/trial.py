@@ -1,11 +1,11 @@
 """Trial: a random board, towed, fitted, and predicted on a tow that was left out."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 
-from studies.coverage.bound import information
 from studies.kept import TrialTask
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
@@ -13,17 +13,86 @@ from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.objective import paper_values, stack
 from trawl_ros.estimation.from_gear import board_prior
-from trawl_ros.lab.trials.linearised_plant import MeshResolution, State, TowedBoard, towed_board
+from trawl_ros.lab.trials.linearised_plant import (
+    LinearisedState,
+    MeshResolution,
+    State,
+    TowedBoard,
+    towed_board,
+)
 from trawl_ros.lab.trials.readings import (
     SAME_IN_ALL_STATES,
+    Sensors,
     steady_windows,
     wrong_by,
 )
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.records.channels import INPUTS
+from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 from trawl_ros.solver.trimming.drawn_board import fastened_as
+
+ROWS = [OBSERVABLES.index(name) for name in MEASURED]
+
+
+def information(tows: Sequence[Sequence[LinearisedState]], sensors: Sensors) -> FloatArray:
+    """Fisher information (12, 12) of the coefficients in the windows of some tows.
+
+    The covariance is the true one: noise of the windows' means, what changes with the state,
+    offsets and errors of scale that go through a tow, and all of these of the warp lengths and
+    speed, through the sensitivities.
+
+    Parameters
+    ----------
+    tows
+        Observables of the plant at the truth.
+    sensors
+        True errors of the instruments.
+    """
+    total = np.zeros((12, 12))
+    for looks in tows:
+        gain = np.vstack([look.by_coefficients[ROWS] for look in looks])
+        whitened = np.linalg.solve(np.linalg.cholesky(_covariance(looks, sensors)), gain)
+        total += whitened.T @ whitened
+    return total
+
+
+def _covariance(looks: Sequence[LinearisedState], sensors: Sensors) -> FloatArray:
+    """Covariance of measured less predicted at the measured inputs, over all windows of a tow."""
+    blocks = []
+    for look in looks:
+        own, inputs = (
+            np.diag(
+                [
+                    sensors.mean_std(name) ** 2 + sensors.state_std(name, _size(look, name)) ** 2
+                    for name in names
+                ]
+            )
+            for names in (MEASURED, INPUTS)
+        )
+        sensitivity = look.by_inputs[ROWS]
+        blocks.append(own + sensitivity @ inputs @ sensitivity.T)
+    columns = []
+    for name in (*MEASURED, *INPUTS):
+        channel, factor = CHANNELS[name], sensors.factor(name)
+        offset = np.concatenate([_effect(look, name) for look in looks])
+        scale = np.concatenate([_effect(look, name) * _size(look, name) for look in looks])
+        columns += [factor * channel.bias * offset, factor * channel.bias_fraction * scale]
+    shared = np.column_stack(columns)
+    covariance: FloatArray = np.asarray(block_diag(*blocks)) + shared @ shared.T
+    return covariance
+
+
+def _effect(look: LinearisedState, name: str) -> FloatArray:
+    """Sensitivity (k,) of the residuals to an offset of a channel or input."""
+    if name in INPUTS:
+        return -look.by_inputs[ROWS, INPUTS.index(name)]
+    return np.array([float(name == other) for other in MEASURED])
+
+
+def _size(look: LinearisedState, name: str) -> float:
+    return float(look.inputs[INPUTS.index(name)]) if name in INPUTS else look[name]
+
 
 TOWS: tuple[tuple[State, ...], ...] = (
     ((300.0, 2.4), (400.0, 2.2), (550.0, 2.0), (700.0, 2.4), (900.0, 2.2)),

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from studies.rates import rate
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
-from trawl_ros.lab.report.rates import rate
 from trawl_ros.lab.trials.hidden_effects.other_keys import RIGHT_NAMES
 from trawl_ros.lab.trials.trial import Scored
 from trawl_ros.lab.trials.verdicts import (

@@ -9,9 +9,9 @@ import numpy as np
 
 from studies.discrepancy.deck import FEW, cause_rows, deck_rows, is_fair
 from studies.discrepancy.worth import repair_rows
+from studies.rates import rate
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Section
-from trawl_ros.lab.report.rates import rate
 from trawl_ros.lab.trials.trial import Scored
 from trawl_ros.lab.trials.verdicts import (
     Classes,

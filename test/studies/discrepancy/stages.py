@@ -1,8 +1,9 @@
 """Stages of the blind tests: made, diagnosed, towed on, diagnosed, fitted without errors."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from hashlib import sha256
 from pathlib import Path
 from shutil import rmtree
 from typing import Any, TypeVar
@@ -10,16 +11,26 @@ from typing import Any, TypeVar
 import numpy as np
 import yaml
 
+import trawl_ros.diagnosis
+import trawl_ros.effects
 from studies.discrepancy.costs import COSTS, MAKING, Timed, keep_cost
 from studies.discrepancy.plan import BlindStudyPlan
-from studies.discrepancy.quiet import fit_quietly
-from studies.discrepancy.rules_hash import rules_hash
 from studies.harness import Work
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder, made_folder, write_json, write_text
 from trawl_ros.core.parallel import run_tasks
 from trawl_ros.core.progress import step_counter
+from trawl_ros.core.resources import share_path
+from trawl_ros.diagnosis.diagnosis import values_of
+from trawl_ros.diagnosis.holdout import split
+from trawl_ros.diagnosis.refit import fit_boards, refitted
+from trawl_ros.diagnosis.score_test import score_test
+from trawl_ros.effects.effect_set import effects_of
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.trials.diagnosing import DiagnosisTask, diagnose_case
 from trawl_ros.lab.trials.following import proposed, tow_on
 from trawl_ros.lab.trials.in_bags import make_bags
@@ -28,6 +39,54 @@ from trawl_ros.lab.trials.tows import PLANS
 from trawl_ros.lab.trials.trial import Scored, Spec
 from trawl_ros.lab.trials.verdicts import Classes, classes, named_right
 from trawl_ros.lab.trials.windows_file import read_windows, write_windows
+from trawl_ros.model.gear_model import build_model
+from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.solver.predict import Predictor
+
+DECIDES_NOTHING = ('onset', 'report')
+"""Folders that do not count: the watch over a tow in motion, and the texts of reports."""
+
+
+def rules_hash() -> str:
+    """SHA-256 of the files by their names and contents, in the order of the names."""
+    digest = sha256()
+    for folder, pattern in (
+        (Path(trawl_ros.diagnosis.__path__[0]), '*.py'),
+        (Path(trawl_ros.effects.__path__[0]), '*.py'),
+        (share_path('config', 'mimics'), '*.yaml'),
+    ):
+        for file in sorted(folder.rglob(pattern)):
+            name = file.relative_to(folder)
+            if name.parts[0] not in DECIDES_NOTHING:
+                digest.update(f'{folder.name}/{name.as_posix()}\n'.encode())
+                digest.update(file.read_bytes())
+    return digest.hexdigest()
+
+
+def fit_quietly(
+    gear: GearRecord, windows: Sequence[SteadyWindow], name: str, baseline: frozenset[int]
+) -> dict[str, Any] | None:
+    """Fit boards and one effect of the catalogue to the windows that decide.
+
+    Returns
+    -------
+    dict or None
+        Values by the effect's ``parameters`` and by ``coefficients``; None where nothing fits.
+    """
+    predictor = Predictor(build_model(gear), effects_of(gear), without=baseline)
+    base = fit_boards(predictor, board_prior(gear), split(windows, baseline).deciding)
+    if base is None:
+        return None
+    seen = score_test(predictor, base.fit, {name: catalogue()[name]})
+    best = refitted(predictor, base, seen, (max(seen.wanted, key=seen.penalised),))
+    if best is None:
+        return None
+    coefficients = map(float, best.estimate.values[: len(COEFFICIENTS)])
+    return {
+        'parameters': {key: value for key, (value, *_) in values_of(best)[name].items()},
+        'coefficients': dict(zip(COEFFICIENTS, coefficients, strict=True)),
+    }
+
 
 Task = TypeVar('Task')
 

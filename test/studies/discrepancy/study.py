@@ -20,8 +20,7 @@ from studies.discrepancy.plan import (
     BlindStudyPlan,
 )
 from studies.discrepancy.rows import all_sections
-from studies.discrepancy.rules_hash import rules_hash
-from studies.discrepancy.stages import read_classes, run_blind
+from studies.discrepancy.stages import read_classes, rules_hash, run_blind
 from studies.harness import Study, StudyResult, Work, machine_words
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import appending

@@ -9,7 +9,6 @@ import pytest
 from studies.discrepancy.costs import cost_rows, keep_cost
 from studies.discrepancy.figure import kind_of
 from studies.discrepancy.plan import BlindStudyPlan
-from studies.discrepancy.quiet import fit_quietly
 from studies.discrepancy.rows import (
     all_sections,
     bag_rows,
@@ -20,8 +19,7 @@ from studies.discrepancy.rows import (
     poor_rows,
     shuffled_rows,
 )
-from studies.discrepancy.rules_hash import rules_hash
-from studies.discrepancy.stages import run_blind
+from studies.discrepancy.stages import fit_quietly, rules_hash, run_blind
 from studies.discrepancy.study import STUDY
 from studies.discrepancy.worth import repair_rows
 from studies.harness import Work, run_study

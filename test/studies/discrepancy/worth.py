@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from studies.rates import median, rate
 from trawl_ros.lab.report.measured import MeasuredValue
-from trawl_ros.lab.report.rates import median, rate
 from trawl_ros.lab.trials.trial import Scored
 from trawl_ros.lab.trials.verdicts import (
     Classes,

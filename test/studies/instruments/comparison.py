@@ -7,19 +7,19 @@ from pathlib import Path
 
 import numpy as np
 
-from studies.instruments.disagreements import HaulDisagreement
-from studies.instruments.guards import GateCounts, gate
-from studies.instruments.range_noise import noise_at
-from studies.instruments.simulated import simulated
+from studies.instruments.guards import GateCounts, HaulDisagreement, gate
 from studies.instruments.statistics import (
     HEIGHT_LIMITS,
     SPREAD_LIMITS,
     STATISTICS,
     Limits,
+    course_of,
+    noise_at,
     statistics,
 )
 from studies.instruments.survey import (
     HEIGHT,
+    KEPT,
     SPREAD,
     Series,
     SurveyHaul,
@@ -27,7 +27,47 @@ from studies.instruments.survey import (
 )
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
+from trawl_ros.core.time import SECOND
+from trawl_ros.instruments.distance import RangeInstrument
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import InstrumentParameters, RangeParameters
+
+TRUTH_S = 0.2
+SHOWN_DECIMALS = 1
+"""Decimals (of m) that the survey's recorder shows."""
+
+
+def simulated(haul: SurveyHaul, parameters: RangeParameters, seed: int) -> Series:
+    """Run a sensor through the course of a haul.
+
+    The recorder is that of the survey: whole seconds, tenths of a metre, and of two readings
+    within one second the first is kept.
+
+    Parameters
+    ----------
+    haul
+        Its course and its length are taken.
+    parameters
+        Of the sensor.
+    seed
+        Shared by all hauls; each draws from its own numbers.
+    """
+    time, value = course_of(haul.series.kept())
+    sensor = RangeInstrument(f'haul {haul.number}', 'distance', parameters, SeedPlan(seed))
+    since = np.arange(0.0, time[-1] - time[0], TRUTH_S)
+    truth = np.interp(since, time - time[0], value)
+    samples = [
+        sample
+        for at, distance in zip(since, truth, strict=True)
+        for sample in sensor.observe(float(distance), round(float(at) * SECOND))
+    ]
+    seconds = np.array([sample.stamp // SECOND for sample in samples])
+    readings = np.array([sample.distance for sample in samples])
+    heard = np.isfinite(readings)
+    seconds, first = np.unique(seconds[heard], return_index=True)
+    codes = np.full(len(seconds), KEPT, dtype=np.int64)
+    shown = np.round(readings[heard][first], SHOWN_DECIMALS)
+    return Series(time[0] + seconds.astype(float), shown, codes)
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,48 @@
 """Statistics of a sensor's readings in a haul, the same of measured and of simulated ones."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
-from studies.instruments.course import NEAR_S, running_median, towing
 from studies.instruments.survey import Series
 from trawl_ros.core.arrays import BoolArray, FloatArray
+from trawl_ros.estimation.windows.statistics import MAD_TO_STD
+
+COURSE_S, NEAR_S = 60.0, 30.0
+"""Half widths (s) of the running medians that are taken for the truth, and for what readings
+scatter about."""
+
+STEADY_PART = 0.15
+"""Towing is where the running median is within this part of that of the middle of the haul."""
+
+EDGE_S = 60.0
+
+
+def running_median(time: FloatArray, value: FloatArray, half_s: float) -> FloatArray:
+    """Return the median (n,) of the readings within ``half_s`` of each."""
+    first = np.searchsorted(time, time - half_s)
+    last = np.searchsorted(time, time + half_s, side='right')
+    return np.array([np.median(value[i:j]) for i, j in zip(first, last, strict=True)])
+
+
+def towing(series: Series) -> tuple[float, float]:
+    """Return the begin and end (s) of the part in which the net is towed, not shot or hauled."""
+    time, value = series.time, series.value
+    since = (time - time[0]) / (time[-1] - time[0])
+    level = np.median(value[(since > 0.3) & (since < 0.7)])
+    course = running_median(time, value, NEAR_S)
+    there = time[np.abs(course - level) < STEADY_PART * level]
+    if len(there) and there[-1] - there[0] > 2.0 * EDGE_S:
+        return float(there[0]) + EDGE_S, float(there[-1]) - EDGE_S
+    return float(time[0]), float(time[-1])
+
+
+def course_of(series: Series) -> tuple[FloatArray, FloatArray]:
+    """Return times (s) and values (m) of the course that is taken for the truth of a haul."""
+    return series.time, running_median(series.time, series.value, COURSE_S)
+
 
 SILENCE_S = 10.0
 SLOW_LAG_S = 30.0
@@ -121,3 +156,40 @@ def _correlation(time: FloatArray, residual: FloatArray, lag_s: float) -> float:
     if np.count_nonzero(there) < 20:
         return np.nan
     return float(np.mean(residual[there] * residual[at[there]]) / np.mean(residual**2))
+
+
+EDGES_M = (0.0, 2.0, 4.0, 8.0, 12.0, 16.0, 20.0, 40.0)
+"""Edges of the classes of distance."""
+
+WITHIN_S = 8.0
+"""Three readings further apart say more of the course than of the noise."""
+
+FEWEST = 50
+"""Readings of a class, at least."""
+
+
+def noise_at(hauls: Sequence[Series]) -> list[tuple[float, int]]:
+    """Return the robust standard deviation (m) of noise, and the number of readings, per class.
+
+    Each reading is compared with the line through those before and after it, so that a steady
+    change does not count; NaN where there are fewer than `FEWEST`.
+    """
+    pairs = [_residuals(series) for series in hauls]
+    level, residual = (np.concatenate(side) for side in zip(*pairs, strict=True))
+    found = []
+    for low, high in pairwise(EDGES_M):
+        here = np.abs(residual[(level >= low) & (level < high)])
+        enough = len(here) >= FEWEST
+        found.append((MAD_TO_STD * float(np.median(here)) if enough else np.nan, len(here)))
+    return found
+
+
+def _residuals(series: Series) -> tuple[FloatArray, FloatArray]:
+    time, value = series.time, series.value
+    near = time[2:] - time[:-2] <= WITHIN_S
+    later = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
+    residual = value[1:-1] - (1.0 - later) * value[:-2] - later * value[2:]
+    # Of independent errors of the same size.
+    residual /= np.sqrt(1.0 + later**2 + (1.0 - later) ** 2)
+    level = np.median([value[:-2], value[1:-1], value[2:]], axis=0)
+    return level[near], residual[near]

@@ -15,9 +15,8 @@ from studies.instruments.comparison import (
     compare_sensors,
     percentiles,
 )
-from studies.instruments.disagreements import CLASSES, WORST
-from studies.instruments.range_noise import EDGES_M
-from studies.instruments.statistics import STATISTICS
+from studies.instruments.guards import CLASSES, WORST
+from studies.instruments.statistics import EDGES_M, STATISTICS
 from studies.instruments.wire_steps import Stretch, growth, read_steps
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder

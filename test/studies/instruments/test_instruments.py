@@ -9,12 +9,17 @@ import pytest
 
 from studies.harness import Work, run_study
 from studies.instruments.calibrations import read_calibrations
-from studies.instruments.course import running_median, towing
-from studies.instruments.disagreements import CLASSES, classified
-from studies.instruments.guards import gate
-from studies.instruments.range_noise import EDGES_M, noise_at
-from studies.instruments.simulated import simulated
-from studies.instruments.statistics import SPREAD_LIMITS, STATISTICS, statistics
+from studies.instruments.comparison import simulated
+from studies.instruments.guards import CLASSES, classified, gate
+from studies.instruments.statistics import (
+    EDGES_M,
+    SPREAD_LIMITS,
+    STATISTICS,
+    noise_at,
+    running_median,
+    statistics,
+    towing,
+)
 from studies.instruments.study import STUDY, InstrumentsPlan
 from studies.instruments.survey import (
     FILE,

@@ -1,14 +1,11 @@
 """Live chain: identification and watch beside one another, on a bag in motion in real time."""
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
-
-from studies.live_nodes import BAG, LiveNodes, live_nodes
+from studies.live_nodes import BAG, LiveNodes, delay_row, live_nodes, share_row
 from trawl_ros.core.progress import OnProgress
-from trawl_ros.lab.report.measured import MeasuredValue, at_most
+from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.running.processes import Value
 
 BEFORE_S = 1500.0
@@ -31,22 +28,20 @@ def live_chain(seconds: float, logs: Path, on_progress: OnProgress) -> LiveNodes
 
 def live_chain_rows(found: LiveNodes) -> list[MeasuredValue]:
     """Share of a core of both nodes together, and delay of estimates by all of the tow."""
-    delays = np.array(found.motion_delays_s)
-    there = len(delays) > 0
     each = ', '.join(f'{node} {share:.1f} %' for node, share in found.shares.items())
     return [
-        MeasuredValue(
+        share_row(
             'both nodes in real time: share of a core',
-            sum(found.shares.values()), '%', at_most(MOST_OF_CORE),
+            found,
+            MOST_OF_CORE,
             f'{each}; the gear as it ships, over {found.wall_s / 60.0:.1f} min of {BAG} behind '
             f'the first {BEFORE_S / 60.0:.0f}; {found.windows} windows at the end',
         ),
-        MeasuredValue(
+        delay_row(
             'both nodes in real time: estimate by all of the tow after its half minute',
-            float(delays.max()) if there else math.nan, 's', at_most(LATEST_S),
-            f'the latest of {len(delays)}; least and most. Findings of the watch come 15 s later '
-            'than what they are of, by design',
-            low=float(delays.min()) if there else math.nan,
-            high=float(delays.max()) if there else math.nan,
+            found.motion_delays_s,
+            LATEST_S,
+            '',
+            '. Findings of the watch come 15 s later than what they are of, by design',
         ),
-    ]  # fmt: skip
+    ]

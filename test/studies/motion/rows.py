@@ -1,16 +1,16 @@
 """Figures of the trials: spread and coverage of both estimates, and errors in states not towed."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.special import chdtri
 from scipy.stats import binomtest
 
-from studies.coverage.rows import interval
 from studies.motion.trial import MotionTrial
+from studies.rates import AGAIN, figure_row
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
-from trawl_ros.lab.report.measured import MeasuredValue, TargetRange, at_most, between
+from trawl_ros.lab.report.measured import MeasuredValue, at_most, between
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 COVERAGE = (92.0, 98.0)
@@ -29,8 +29,6 @@ BAND = tuple(float(chdtri(len(COEFFICIENTS), tail)) for tail in (0.975, 0.025))
 """Band that holds 95 % of the squared normalised errors of twelve coefficients."""
 
 WHO = ('windows alone', 'all of the tow')
-
-AGAIN = 'interval by drawing trials again'
 
 
 def motion_rows(trials: Sequence[MotionTrial], series: str, *, asked: bool) -> list[MeasuredValue]:
@@ -53,14 +51,12 @@ def _spread_row(trials: Sequence[MotionTrial], series: str, *, asked: bool) -> M
     std = np.log(_array(trials, 'std'))
     ratios = (std[:, 1] - std[:, 0]).mean(axis=1)
 
-    def figure(some: IntArray) -> FloatArray:
-        return np.asarray(np.exp(ratios[some].mean()), np.float64)
-
     each = np.exp((std[:, 1] - std[:, 0]).mean(axis=0))
     words = ', '.join(f'{n} {r:.2f}' for n, r in zip(COEFFICIENTS, each, strict=True))
-    return _row(
+    return figure_row(
         f'{series}: std of all of the tow over that of its windows, geometric mean',
-        figure, len(trials), '', at_most(MOST_SPREAD) if asked else None, words,
+        lambda some: float(np.exp(ratios[some].mean())),
+        len(trials), '', at_most(MOST_SPREAD) if asked else None, words,
     )  # fmt: skip
 
 
@@ -68,9 +64,9 @@ def _coverage_row(
     trials: Sequence[MotionTrial], series: str, who: int, *, asked: bool
 ) -> MeasuredValue:
     inside = covered(trials, who)
-    return _row(
+    return figure_row(
         f'{series}: 95 % intervals of {WHO[who]} that cover the truth',
-        lambda some: np.asarray(100.0 * inside[some].mean(), np.float64),
+        lambda some: float(100.0 * inside[some].mean()),
         len(trials), '%', between(*COVERAGE) if asked and who else None,
         f'{int(inside.sum())} of {inside.size}; {AGAIN}',
     )  # fmt: skip
@@ -112,9 +108,9 @@ def differing(chances: Sequence[float]) -> int:
 def _squared_row(trials: Sequence[MotionTrial], series: str, who: int) -> MeasuredValue:
     squares = _array(trials, 'squared')[:, who]
     inside = int(np.sum((squares >= BAND[0]) & (squares <= BAND[1])))
-    return _row(
+    return figure_row(
         f'{series}: squared normalised error of twelve coefficients by {WHO[who]}, median',
-        lambda some: np.asarray(np.median(squares[some]), np.float64),
+        lambda some: float(np.median(squares[some])),
         len(trials), '', None,
         f'{inside} of {len(trials)} trials within {BAND[0]:.1f} to {BAND[1]:.1f}, where 95 % '
         f'belong; the median of right ones is 11.3; {AGAIN}',
@@ -135,12 +131,12 @@ def _held_out_rows(
     for column, channel in enumerate(PAPER_CHANNELS):
         own = wrong[:, :, column]
 
-        def figure(some: IntArray, own: FloatArray = own) -> FloatArray:
-            return np.asarray(own[some, who].sum() / own[some, 2].sum(), np.float64)
+        def figure(some: IntArray, own: FloatArray = own) -> float:
+            return float(own[some, who].sum() / own[some, 2].sum())
 
         of = 100.0 * own[:, 2].sum() / np.abs(measured)[there][:, column].sum()
         rows.append(
-            _row(
+            figure_row(
                 f'{series}: states not towed, error in {channel.name.replace("_", " ")} by '
                 f'{WHO[who]} over that by the truth',
                 figure, len(trials), '', at_most(OVER_TRUTH) if asked and who else None,
@@ -175,19 +171,6 @@ def _rest_rows(trials: Sequence[MotionTrial], series: str) -> list[MeasuredValue
             100.0 * (1.0 - len(trials) / drawn), '%', note=f'of {drawn}; drawn again',
         ),
     ]  # fmt: skip
-
-
-def _row(
-    what: str,
-    figure: Callable[[IntArray], FloatArray],
-    number: int,
-    unit: str,
-    target: TargetRange | None,
-    note: str,
-) -> MeasuredValue:
-    low, high = interval(figure, number)
-    value = float(figure(np.arange(number)))
-    return MeasuredValue(what, value, unit, target, note, low=float(low), high=float(high))
 
 
 def _array(trials: Sequence[MotionTrial], name: str) -> FloatArray:

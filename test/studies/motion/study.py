@@ -5,9 +5,13 @@ from dataclasses import asdict, dataclass
 
 from studies.harness import Study, StudyResult, Work, machine_words, option
 from studies.kept import KeptTrials
-from studies.motion.detectable_rows import detectable_rows
-from studies.motion.detectable_sizes import DetectableSizes, run_detectable
-from studies.motion.detectable_tows import STATE_MINUTES, STATES
+from studies.motion.detectable import (
+    STATE_MINUTES,
+    STATES,
+    DetectableSizes,
+    detectable_rows,
+    run_detectable,
+)
 from studies.motion.plant import HELD_OUT
 from studies.motion.rows import motion_rows
 from studies.motion.trial import AUTOTRAWLED, MotionTask, MotionTrial, run_motion_trial

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from studies.harness import Work, run_study
+from studies.motion.detectable import DetectableSizes, detectable_rows
 from studies.motion.detectable_information import ExaminedGear, information_in_motion
-from studies.motion.detectable_rows import detectable_rows
-from studies.motion.detectable_sizes import DetectableSizes
 from studies.motion.study import STUDY, MotionPlan
 from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.onset.candidates import WATCHED

@@ -2,16 +2,17 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import chi2
 
 from studies.onset.trial import BEHIND_MIN, OnsetTrial
+from studies.rates import AGAIN, figure_row, rate
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.onset.monitor import OnsetOptions
 from trawl_ros.lab.report.measured import MeasuredValue, TargetRange, at_most
 from trawl_ros.lab.report.page import TextTable
-from trawl_ros.lab.report.rates import rate
 
 NEAR_S = 180.0
 """An onset is right that is told within so much."""
@@ -91,12 +92,15 @@ def _late(trial: OnsetTrial) -> float:
 def _quantile(what: str, delays: FloatArray, part: float, most: float, key: str) -> MeasuredValue:
     if not len(delays):
         return MeasuredValue(what, np.nan, 'min', at_most(most), 'nothing was detected', key=key)
-    chance = np.random.default_rng(0)
-    again = [np.quantile(chance.choice(delays, len(delays)), part) for _ in range(1000)]
-    low, high = np.quantile(again, (0.025, 0.975))
-    note = f'of {len(delays)} that were detected; 95 % interval by drawing trials again'
-    value = float(np.quantile(delays, part))
-    return MeasuredValue(what, value, 'min', at_most(most), note, float(low), float(high), key)
+    row = figure_row(
+        what,
+        lambda some: float(np.quantile(delays[some], part)),
+        len(delays),
+        'min',
+        at_most(most),
+        f'of {len(delays)} that were detected; {AGAIN}',
+    )
+    return replace(row, key=key)
 
 
 def _false(
