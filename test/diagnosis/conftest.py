@@ -55,8 +55,8 @@ def trial(
 ) -> list[SteadyWindow]:
     """Steady windows of tows with errors of instruments as stated."""
     seen = looks(gear, hidden)
-    chance = np.random.default_rng(seed)
-    windows = steady_windows([seen] * tows, AS_STATED, chance, first_tow=first)
+    rng = np.random.default_rng(seed)
+    windows = steady_windows([seen] * tows, AS_STATED, rng, first_tow=first)
     return [
         replace(window, hours=HOURS * (number % len(STATES)))
         for number, window in enumerate(windows)

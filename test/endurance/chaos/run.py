@@ -1,17 +1,63 @@
 """Study of fault injection: a tow undisturbed, the same with faults, and the recorder killed."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from endurance.chaos.alike import estimate_alike
 from endurance.chaos.kills import Kills, run_kills
 from endurance.chaos.plan import Plan, faults_of
 from endurance.chaos.tow import DisturbedTow, run_tow
 from endurance.long_tow import COARSEST
 from trawl_ros.core.files import made_folder
 from trawl_ros.core.progress import OnProgress
+from trawl_ros.estimation.from_gear import identification_for
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.trials.linearised_plant import MeshResolution
+from trawl_ros.records.coefficients import COEFFICIENTS
+
+
+def same_stretches(
+    calm: Sequence[SteadyWindow], wild: Sequence[SteadyWindow]
+) -> list[SteadyWindow]:
+    """Return the windows of one tow that overlap in time with some of another's."""
+    return [
+        window
+        for window in calm
+        if any(window.start_ns < other.end_ns and other.start_ns < window.end_ns for other in wild)
+    ]
+
+
+def estimate_alike(
+    calm: Sequence[SteadyWindow], wild: Sequence[SteadyWindow], gear: GearRecord
+) -> Mapping[str, float]:
+    """Estimate coefficients from the same stretches of the undisturbed tow.
+
+    Parameters
+    ----------
+    calm, wild
+        Windows of the undisturbed tow, and of the disturbed one.
+    gear
+        Of the model that is fitted.
+
+    Returns
+    -------
+    dict
+        Each coefficient by its name, and the ends of its interval as ``<name> low`` and ``high``;
+        empty where the tows have no stretch in common.
+    """
+    identification = identification_for(gear)
+    identification.take(same_stretches(calm, wild))
+    identification.estimator.finish()
+    found = identification.estimate
+    if found is None:
+        return {}
+    ends = (('', found.values), (' low', found.low), (' high', found.high))
+    return {
+        f'{name}{end}': float(value)
+        for end, values in ends
+        for name, value in zip(COEFFICIENTS, values, strict=True)
+    }
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,11 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
 
-from endurance.chaos.alike import same_stretches
 from endurance.chaos.crew import Recording
 from endurance.chaos.kills import Kills
 from endurance.chaos.plan import REPERTOIRE, Plan, faults_of
 from endurance.chaos.rows import chaos_sections
-from endurance.chaos.run import Chaos, run_chaos
+from endurance.chaos.run import Chaos, run_chaos, same_stretches
 from endurance.chaos.tow import DisturbedTow
 from endurance.table import FULL
 from endurance.watching import Glance

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from endurance.chaos.alike import saved_windows
 from endurance.chaos.crew import Crew, Recording, looked_into
 from endurance.chaos.plan import (
     IDENTIFICATION,
@@ -20,8 +19,11 @@ from endurance.long_tow import TRUTH_HZ, write_coarse_gear
 from endurance.stranger import Stranger
 from endurance.watching import Glance, JournalMonitor, glance, watched_of
 from trawl_ros.core.progress import OnProgress, WorkProgress
+from trawl_ros.estimation.checkpoint.file import load_checkpoint
+from trawl_ros.estimation.from_gear import identification_for
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import NodeFailed, Processes
 
@@ -126,6 +128,13 @@ def run_tow(
         tow.windows = saved_windows(crew.state, load_gear(gear))
         tow.recordings = [looked_into(recording, monitor) for recording in crew.recordings]
     return tow
+
+
+def saved_windows(state: Path, gear: GearRecord) -> tuple[SteadyWindow, ...]:
+    """Return the windows of the estimate that `identification_node` has saved; none without."""
+    if not state.exists():
+        return ()
+    return tuple(load_checkpoint(state, identification_for(gear), gear).estimator.windows)
 
 
 def _finish(monitor: JournalMonitor, crew: Crew, turmoil: '_Turmoil') -> str:

@@ -7,15 +7,18 @@ import pytest
 
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.registry import catalogue
-from trawl_ros.lab.trials.course import quasi_steady, settling_time
 from trawl_ros.lab.trials.diagnosing import _of_bags
-from trawl_ros.lab.trials.following import proposed, tow_on
 from trawl_ros.lab.trials.hidden_effects.inside import INSIDE
-from trawl_ros.lab.trials.making import likelihood_of, make
+from trawl_ros.lab.trials.making import likelihood_of, make, proposed, tow_on
 from trawl_ros.lab.trials.plant import FINER, draw_plant
 from trawl_ros.lab.trials.readings import AS_STATED
 from trawl_ros.lab.trials.recording import record_tows
-from trawl_ros.lab.trials.towing import hidden_effect_set, towed_in_time
+from trawl_ros.lab.trials.towing import (
+    hidden_effect_set,
+    quasi_steady,
+    settling_time,
+    towed_in_time,
+)
 from trawl_ros.lab.trials.tows import FULL, POOR, PlannedTow
 from trawl_ros.lab.trials.trial import Spec
 from trawl_ros.lab.trials.verdicts import classes
@@ -54,8 +57,8 @@ def test_states_follow_each_other_and_are_held_until_they_are_steady(plant):
 def test_what_is_found_in_a_bag_is_what_was_towed(plant, tmp_path):
     looks = plant.towed((), FULL)[:2]
     courses = [quasi_steady(tow, own) for tow, own in zip(FULL.tows, looks, strict=False)]
-    chance = np.random.default_rng(1)
-    record_tows(tmp_path / 'bags', courses, plant.model.water, AS_STATED, 0.0, chance)
+    rng = np.random.default_rng(1)
+    record_tows(tmp_path / 'bags', courses, plant.model.water, AS_STATED, 0.0, rng)
     windows, names = _of_bags(tmp_path / 'bags', FINER.model(GEAR))
     assert len(names) == 2
     found = set()
@@ -78,8 +81,8 @@ def test_what_is_found_in_a_bag_is_what_was_towed(plant, tmp_path):
 @pytest.mark.slow
 def test_channels_that_need_not_be_there_fall_silent(plant, tmp_path):
     courses = [quasi_steady(FULL.tows[0], plant.towed((), FULL)[0])]
-    chance = np.random.default_rng(2)
-    record_tows(tmp_path / 'bags', courses, plant.model.water, AS_STATED, 1.0, chance)
+    rng = np.random.default_rng(2)
+    record_tows(tmp_path / 'bags', courses, plant.model.water, AS_STATED, 1.0, rng)
     windows, _ = _of_bags(tmp_path / 'bags', FINER.model(GEAR))
     assert windows
     assert all('port_pitch' not in window.means for window in windows)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.lab.trials.diagnosing import read_windows, write_windows
 from trawl_ros.lab.trials.hidden_effects.inside import INSIDE
 from trawl_ros.lab.trials.hidden_effects.on_deck import ON_DECK
 from trawl_ros.lab.trials.hidden_effects.other_keys import CAUSES
@@ -14,7 +15,6 @@ from trawl_ros.lab.trials.making import likelihood_of, make
 from trawl_ros.lab.trials.plant import FINER, draw_plant
 from trawl_ros.lab.trials.tows import FULL
 from trawl_ros.lab.trials.trial import Spec
-from trawl_ros.lab.trials.windows_file import read_windows, write_windows
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.stability import stability
 

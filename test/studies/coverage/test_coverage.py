@@ -52,9 +52,9 @@ def trial(number, *, error=0.0, half=1.0, std=1.0, held_out=0.02, floor=0.02):
 
 @pytest.mark.parametrize(('quantile', 'ok'), [(1.96, True), (1.2, False), (3.5, False)])
 def test_intervals_too_narrow_or_too_wide_miss_the_target(quantile, ok):
-    chance = np.random.default_rng(3)
+    rng = np.random.default_rng(3)
     trials = [
-        trial(n, error=chance.standard_normal(12), half=quantile * np.ones(12)) for n in range(300)
+        trial(n, error=rng.standard_normal(12), half=quantile * np.ones(12)) for n in range(300)
     ]
     rows = coverage_rows(trials, 'a plant', asked=True)
     assert rows[0].ok is ok
@@ -64,11 +64,9 @@ def test_intervals_too_narrow_or_too_wide_miss_the_target(quantile, ok):
 
 @pytest.mark.parametrize(('factor', 'ok'), [(1.0, True), (1.5, False), (0.7, False)])
 def test_the_spread_is_that_over_the_bound(factor, ok):
-    chance = np.random.default_rng(4)
+    rng = np.random.default_rng(4)
     std = 0.1 * PRIOR.std
-    trials = [
-        trial(n, error=factor * std * chance.standard_normal(12), std=std) for n in range(200)
-    ]
+    trials = [trial(n, error=factor * std * rng.standard_normal(12), std=std) for n in range(200)]
     rows = spread_rows(trials, PRIOR)
     assert rows[0].value == pytest.approx(factor, rel=0.05)
     assert rows[0].ok is ok
@@ -96,15 +94,15 @@ def test_a_state_that_the_model_lacks_is_counted_and_left_out():
 
 
 def looks(number=3):
-    chance = np.random.default_rng(9)
+    rng = np.random.default_rng(9)
     size = {name: CHANNELS[name].noise for name in MEASURED}
     scale = np.array([size.get(name, 1.0) for name in OBSERVABLES])[:, None]
     return [
         LinearisedState(
             (300.0 + 100.0 * n, 2.0 + 0.1 * n),
             50.0 + 10.0 * n + np.arange(len(OBSERVABLES)),
-            scale * chance.standard_normal((len(OBSERVABLES), 3)) * (0.5, 0.5, 20.0),
-            scale * chance.standard_normal((len(OBSERVABLES), 12)),
+            scale * rng.standard_normal((len(OBSERVABLES), 3)) * (0.5, 0.5, 20.0),
+            scale * rng.standard_normal((len(OBSERVABLES), 12)),
         )
         for n in range(number)
     ]

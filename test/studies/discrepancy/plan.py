@@ -83,8 +83,8 @@ class BlindStudyPlan:
         """All trials."""
         alone = tuple(self._in_windows())
         if self.sample:
-            chance = np.random.default_rng([self.seed, *b'sample'])
-            some = chance.permutation(len(alone))[: self.sample]
+            rng = np.random.default_rng([self.seed, *b'sample'])
+            some = rng.permutation(len(alone))[: self.sample]
             return tuple(alone[place] for place in sorted(some))
         numbers = count(len(alone))
         full = [one for one in alone if one.plan == 'full']
@@ -99,12 +99,12 @@ class BlindStudyPlan:
 
     def _at_sea(self) -> Iterator[Spec]:
         """Trials of a day: what is hidden is drawn from all that may be."""
-        chance = np.random.default_rng([self.seed, *b'sea'])
+        rng = np.random.default_rng([self.seed, *b'sea'])
         for number in range(self.dynamic):
-            plan, plant = list(SEA)[number % len(SEA)], int(chance.integers(PLANTS))
-            name = str(chance.choice([*INSIDE, *CAUSES]))
-            strength = float(chance.choice(SEA_STRENGTHS))
-            sign = float(chance.choice({**INSIDE, **CAUSES}[name](np.random.default_rng(0)).signs))
+            plan, plant = list(SEA)[number % len(SEA)], int(rng.integers(PLANTS))
+            name = str(rng.choice([*INSIDE, *CAUSES]))
+            strength = float(rng.choice(SEA_STRENGTHS))
+            sign = float(rng.choice({**INSIDE, **CAUSES}[name](np.random.default_rng(0)).signs))
             # The plans take turns with what is hidden: each has trials without anything.
             if (number + number // len(SEA)) % CLEAN_AT_SEA == CLEAN_AT_SEA - 1:
                 yield Spec('sea', number, (), 0.0, (), plant, plan)
@@ -112,7 +112,7 @@ class BlindStudyPlan:
                 yield Spec('sea', number, (name,), strength, (sign,), plant, plan)
 
     def _in_windows(self) -> Iterator[Spec]:
-        chance = np.random.default_rng([self.seed, *b'plan'])
+        rng = np.random.default_rng([self.seed, *b'plan'])
         numbers = count()
 
         def spec(
@@ -122,7 +122,7 @@ class BlindStudyPlan:
             signs: tuple[float, ...],
             plan: str = 'full',
         ) -> Spec:
-            plant = int(chance.integers(PLANTS))
+            plant = int(rng.integers(PLANTS))
             return Spec(series, next(numbers), effects, strength, signs, plant, plan)
 
         for _ in range(self.clean):
@@ -135,7 +135,7 @@ class BlindStudyPlan:
         ):  # fmt: skip
             for name, strength in product(group, strengths):
                 signs = group[name](np.random.default_rng(0)).signs
-                first = int(chance.integers(len(signs)))
+                first = int(rng.integers(len(signs)))
                 for turn in range(many):
                     # To both sides in turn, whichever comes first.
                     side = signs[(first + turn) % len(signs)]
@@ -143,7 +143,7 @@ class BlindStudyPlan:
 
         def sides_of(names: tuple[str, ...]) -> tuple[float, ...]:
             return tuple(
-                float(chance.choice(INSIDE[name](np.random.default_rng(0)).signs)) for name in names
+                float(rng.choice(INSIDE[name](np.random.default_rng(0)).signs)) for name in names
             )
 
         for names in PAIRS:
@@ -152,7 +152,7 @@ class BlindStudyPlan:
         # Last, so that the draws of all others stay what they were.
         for name, strength in product(CAUSES, DECK_STRENGTHS):
             signs = CAUSES[name](np.random.default_rng(0)).signs
-            first = int(chance.integers(len(signs)))
+            first = int(rng.integers(len(signs)))
             for turn in range(self.deck):
                 side = signs[(first + turn) % len(signs)]
                 yield spec('deck', (name,), strength, (side,))

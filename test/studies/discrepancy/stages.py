@@ -31,14 +31,23 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.trials.diagnosing import DiagnosisTask, diagnose_case
-from trawl_ros.lab.trials.following import proposed, tow_on
-from trawl_ros.lab.trials.in_bags import make_bags
-from trawl_ros.lab.trials.making import gear_aboard, likelihood_of, make
+from trawl_ros.lab.trials.diagnosing import (
+    DiagnosisTask,
+    diagnose_case,
+    read_windows,
+    write_windows,
+)
+from trawl_ros.lab.trials.making import (
+    gear_aboard,
+    likelihood_of,
+    make,
+    make_bags,
+    proposed,
+    tow_on,
+)
 from trawl_ros.lab.trials.tows import PLANS
 from trawl_ros.lab.trials.trial import Scored, Spec
 from trawl_ros.lab.trials.verdicts import Classes, classes, named_right
-from trawl_ros.lab.trials.windows_file import read_windows, write_windows
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.predict import Predictor
@@ -282,8 +291,8 @@ def _json(path: Path) -> Any:
 
 
 def _names(plan: BlindStudyPlan, number: int) -> list[str]:
-    chance = np.random.default_rng([plan.seed, *b'names'])
-    return [chance.bytes(6).hex() for _ in range(number)]
+    rng = np.random.default_rng([plan.seed, *b'names'])
+    return [rng.bytes(6).hex() for _ in range(number)]
 
 
 def _prepare(plan: BlindStudyPlan, folder: Path, *, force: bool) -> None:

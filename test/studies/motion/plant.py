@@ -79,7 +79,7 @@ class PlantTow:
         return self.gear.board.coefficients.array()
 
 
-def draw_tow(record: GearRecord, course: Scenario, chance: np.random.Generator) -> PlantTow:
+def draw_tow(record: GearRecord, course: Scenario, rng: np.random.Generator) -> PlantTow:
     """Draw boards and their added mass until they can be towed, at rest and in time, and the
     calibration of the sensors that read them.
 
@@ -89,7 +89,7 @@ def draw_tow(record: GearRecord, course: Scenario, chance: np.random.Generator) 
         The plant.
     course
         Scenario whose commands are towed.
-    chance
+    rng
         Generator of random numbers.
 
     Raises
@@ -100,17 +100,17 @@ def draw_tow(record: GearRecord, course: Scenario, chance: np.random.Generator) 
     states = tuple((command.port_length, command.speed) for _, command in course.commands)
     rejected: Counter[str] = Counter()
     for _ in range(MOST_DRAWS):
-        board = towed_board(record, (states, HELD_OUT), chance)
+        board = towed_board(record, (states, HELD_OUT), rng)
         gear = board.drawn.gear
         rejected += board.drawn.rejected
-        added_mass = ADDED_MASS_STD * abs(chance.standard_normal())
-        seed = int(chance.integers(2**31))
+        added_mass = ADDED_MASS_STD * abs(rng.standard_normal())
+        seed = int(rng.integers(2**31))
         try:
             samples = towed_samples(gear, board.drawn.coefficients, added_mass, course, seed)
         except (NoSteadyState, StepFailed):
             rejected['in time'] += 1
             continue
-        depth, errors = build_water(record).depth, drawn_errors(AS_STATED, chance)
+        depth, errors = build_water(record).depth, drawn_errors(AS_STATED, rng)
         read = tuple(miscalibrated(sample, depth, *errors) for sample in samples)
         return PlantTow(gear, added_mass, read, board.tows[1], rejected)
     raise TrawlError(f'none of {MOST_DRAWS} boards that can be towed at rest tows the course')

@@ -99,8 +99,8 @@ def _worst_row(
 
 def differing(chances: Sequence[float]) -> int:
     """Number of hypotheses that are rejected by Holm's procedure, by their p-values."""
-    for done, chance in enumerate(sorted(chances)):
-        if chance > ALPHA / (len(chances) - done):
+    for done, rng in enumerate(sorted(chances)):
+        if rng > ALPHA / (len(chances) - done):
             return done
     return len(chances)
 

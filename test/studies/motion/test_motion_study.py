@@ -16,10 +16,10 @@ from trawl_ros.estimation.from_gear import identification_for
 from trawl_ros.gear.load import load_gear
 
 
-def trial(number, chance, *, ratio=0.5, narrow=1.0, off=0.0):
+def trial(number, rng, *, ratio=0.5, narrow=1.0, off=0.0):
     """A trial with normal errors; intervals in motion are too narrow by a factor."""
     std = np.array([np.ones(12), np.full(12, ratio)])
-    values = std * chance.standard_normal((2, 12))
+    values = std * rng.standard_normal((2, 12))
     std[1] /= narrow
     measured = np.full((4, 4), 100.0)
     away = np.array([0.4, 0.2 * (1.0 + off), 0.2])
@@ -34,8 +34,8 @@ def trial(number, chance, *, ratio=0.5, narrow=1.0, off=0.0):
 
 
 def rows_of(**changes):
-    chance = np.random.default_rng(8)
-    trials = [trial(number, chance, **changes) for number in range(60)]
+    rng = np.random.default_rng(8)
+    trials = [trial(number, rng, **changes) for number in range(60)]
     return {row.what: row for row in motion_rows(trials, 'x', asked=True)}
 
 
@@ -67,8 +67,8 @@ def test_errors_in_states_not_towed_are_set_over_those_by_the_truth():
 
 
 def test_states_without_a_prediction_are_left_out_of_all_three():
-    chance = np.random.default_rng(8)
-    trials = [trial(number, chance) for number in range(3)]
+    rng = np.random.default_rng(8)
+    trials = [trial(number, rng) for number in range(3)]
     gone = [[[None] * 4, *part[1:]] if who == 1 else part
             for who, part in enumerate(trials[0].predicted)]  # fmt: skip
     trials[0] = replace(trials[0], predicted=gone)

@@ -34,7 +34,7 @@ BY_TOW, BY_WINDOWS, BY_FILE = 'all of a tow', 'its steady windows', 'the gear fi
 where there are none."""
 
 
-def drawn_knowledge(gear: GearRecord, truth: FloatArray, chance: np.random.Generator) -> Knowledge:
+def drawn_knowledge(gear: GearRecord, truth: FloatArray, rng: np.random.Generator) -> Knowledge:
     """Boards as they are known: the truth, wrong by as much as is stated, within their bounds.
 
     Parameters
@@ -43,17 +43,17 @@ def drawn_knowledge(gear: GearRecord, truth: FloatArray, chance: np.random.Gener
         Gear whose prior says how large `KNOWN` is.
     truth
         Coefficients (12,) of the plant.
-    chance
+    rng
         Generator of random numbers.
     """
     prior = board_prior(gear)
     std = KNOWN * prior.std
-    values = truth + std * chance.standard_normal(len(std))
+    values = truth + std * rng.standard_normal(len(std))
     return Knowledge(np.clip(values, prior.low, prior.high), np.diag(std**2))
 
 
 def knowledge_by_tow(
-    folder: Path, scenario: Scenario, believed: GearRecord, chance: np.random.Generator
+    folder: Path, scenario: Scenario, believed: GearRecord, rng: np.random.Generator
 ) -> tuple[Knowledge, str]:
     """Boards as `trawl identify` finds them in a tow before, through the same states.
 
@@ -65,7 +65,7 @@ def knowledge_by_tow(
         The course, of the plant that is towed.
     believed
         Gear of the model.
-    chance
+    rng
         Generator of random numbers.
 
     Returns
@@ -76,7 +76,7 @@ def knowledge_by_tow(
         Its source.
     """
     course = yaml.safe_load((folder / COURSE).read_text(encoding='utf-8'))
-    course['seed'] = int(chance.integers(2**31))
+    course['seed'] = int(rng.integers(2**31))
     course['steps'] = [step | {'minutes': STATE_MIN} for step in course['steps'][:STATES]]
     path = folder / 'before.yaml'
     write_text(path, yaml.safe_dump(course))

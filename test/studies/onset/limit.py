@@ -64,7 +64,7 @@ def drawn_limit(gear: str, seed: int, minutes: float, draws: int, asked_h: float
 
 
 def drawn_rarest(
-    table: CandidateTable, marks: Iterable[FloatArray], draws: int, chance: np.random.Generator
+    table: CandidateTable, marks: Iterable[FloatArray], draws: int, rng: np.random.Generator
 ) -> FloatArray:
     """Rarity (draws,) of the rarest candidate and onset in a tow of white innovations.
 
@@ -89,7 +89,7 @@ def drawn_rarest(
         for array in (products, squares[None]):
             array[:, 1:] = array[:, :-1].copy()
             array[:, 0] = 0.0
-        told = chance.standard_normal((draws, own.shape[1]))
+        told = rng.standard_normal((draws, own.shape[1]))
         products += np.einsum('wrp,nr->nwp', own, told, optimize=True)
         squares += np.matmul(np.swapaxes(own, 1, 2), own)
         ages = np.arange(FEWEST - 1, min(known, window))

@@ -29,7 +29,7 @@ LEG_MIN = (3.0, 9.0)
 
 
 def random_course(
-    folder: Path, gear: GearRecord, minutes: float, chance: np.random.Generator
+    folder: Path, gear: GearRecord, minutes: float, rng: np.random.Generator
 ) -> Scenario:
     """Random course, of a plant with the boards of the gear file.
 
@@ -41,26 +41,26 @@ def random_course(
         Of model and plant.
     minutes
         Of the tow.
-    chance
+    rng
         Generator of random numbers.
     """
     write_text(folder / 'gear.yaml', yaml.safe_dump(gear.model_dump(mode='json')))
-    length, speed = chance.uniform(*LENGTHS_M), chance.uniform(*SPEEDS_M_S)
+    length, speed = rng.uniform(*LENGTHS_M), rng.uniform(*SPEEDS_M_S)
     steps: list[dict[str, object]] = []
     left = minutes
     while left > 0.0:
-        leg = min(left, chance.uniform(*LEG_MIN))
+        leg = min(left, rng.uniform(*LEG_MIN))
         step: dict[str, object] = {'name': f'leg {len(steps) + 1}', 'minutes': float(leg)}
-        if steps and chance.uniform() < 0.5:
-            step['speed_m_s'] = float(chance.uniform(*SPEEDS_M_S))
+        if steps and rng.uniform() < 0.5:
+            step['speed_m_s'] = float(rng.uniform(*SPEEDS_M_S))
         elif steps:
-            step['warp_length_m'] = float(chance.uniform(*LENGTHS_M))
+            step['warp_length_m'] = float(rng.uniform(*LENGTHS_M))
         steps.append(step)
         left -= leg
     record = {
         'description': 'a tow in which something may begin',
         'gear': 'gear.yaml',
-        'seed': int(chance.integers(2**31)),
+        'seed': int(rng.integers(2**31)),
         'refine': {'warp': 2, 'bridle': 2, 'unjoined': True},
         'start': {'warp_length_m': float(length), 'speed_m_s': float(speed)},
         'steps': steps,
@@ -72,7 +72,7 @@ def random_course(
     return load_scenario(path)
 
 
-def with_boards(scenario: Scenario, chance: np.random.Generator) -> Scenario:
+def with_boards(scenario: Scenario, rng: np.random.Generator) -> Scenario:
     """The same course, of a plant with boards from the gear file's prior that tow it at rest; the
     model's are fastened alike.
 
@@ -82,7 +82,7 @@ def with_boards(scenario: Scenario, chance: np.random.Generator) -> Scenario:
         If none of those drawn tows.
     """
     states = tuple((command.port_length, command.speed) for _, command in scenario.commands)
-    plant = draw_board(scenario.plant, states, chance).gear
+    plant = draw_board(scenario.plant, states, rng).gear
     return replace(scenario, gear=fastened_as(scenario.gear, plant), plant=plant)
 
 

@@ -99,13 +99,13 @@ def test_tows_whose_boards_lie_are_told_apart_from_those_a_ship_would_tow_on():
 
 def test_candidates_without_a_mark_are_never_rare_and_one_that_has_some_is_as_chance_says():
     table = candidate_table({})
-    number, chance = len(table.parameters), np.random.default_rng(4)
+    number, rng = len(table.parameters), np.random.default_rng(4)
     marks = np.zeros((4, 2, number))
-    assert not drawn_rarest(table, [marks] * 3, 10, chance).any()
+    assert not drawn_rarest(table, [marks] * 3, 10, rng).any()
     (column,) = table.candidates[0].columns
     # A mark far larger than its prior: the ratio of one onset is then χ² of one.
     marks[:, 0, column] = 1e6 / table.scale[column]
-    rarest = drawn_rarest(table, [marks, marks], 4000, chance)
+    rarest = drawn_rarest(table, [marks, marks], 4000, rng)
     assert np.mean(rarest > 2.0) == pytest.approx(0.01, abs=0.006)
 
 
@@ -123,8 +123,8 @@ def test_plants_have_boards_of_their_own_and_what_is_known_of_them_is_wrong_as_s
     assert first.gear.board.fastening == first.plant.board.fastening != course.gear.board.fastening
     assert first.gear.board.coefficients == course.gear.board.coefficients
     assert first.commands == course.commands
-    chance = np.random.default_rng(6)
-    away = [drawn_knowledge(record, boards, chance).values - boards for _ in range(300)]
+    rng = np.random.default_rng(6)
+    away = [drawn_knowledge(record, boards, rng).values - boards for _ in range(300)]
     inside = np.minimum(boards - prior.low, prior.high - boards) > 3.0 * KNOWN * prior.std
     assert np.std(away, axis=0)[inside] == pytest.approx(KNOWN * prior.std[inside], rel=0.15)
 

@@ -158,27 +158,27 @@ def make_trial(task: OnsetTask) -> OnsetTrial:
     number, clean = task.number, task.series == CLEAN
     record = MeshResolution(COARSEST).model(task.gear)
     record.require_boards('whose tow could be watched')
-    chance = np.random.default_rng([task.seed, number, int(clean)])
+    rng = np.random.default_rng([task.seed, number, int(clean)])
     names = list(STEADY_SIZES)
     effect = '' if clean else names[number % len(names)]
-    begin = 60.0 * chance.uniform(EARLIEST_MIN, LATEST_MIN)
+    begin = 60.0 * rng.uniform(EARLIEST_MIN, LATEST_MIN)
     size = 0.0
     acting = NO_EFFECTS
     if effect:
-        acting, size = _beginning(catalogue()[effect], begin, chance)
+        acting, size = _beginning(catalogue()[effect], begin, rng)
     trial = OnsetTrial(number, effect, size, begin if effect else None, series=task.series)
     raised: list[Finding] = []
     keeper = CourseKeeper()
     spent = fallen_s = 0.0
     with TemporaryDirectory() as folder:
-        scenario = random_course(Path(folder), record, task.minutes, chance)
+        scenario = random_course(Path(folder), record, task.minutes, rng)
         try:
-            scenario = with_boards(scenario, chance)
+            scenario = with_boards(scenario, rng)
             believed = scenario.gear
             if task.known == 'draw':
-                known = drawn_knowledge(record, scenario.plant.board.coefficients.array(), chance)
+                known = drawn_knowledge(record, scenario.plant.board.coefficients.array(), rng)
             else:
-                known, by = knowledge_by_tow(Path(folder), scenario, believed, chance)
+                known, by = knowledge_by_tow(Path(folder), scenario, believed, rng)
                 trial = replace(trial, known=by)
             # An effect that begins is none of a file: it takes the place of the plant's own.
             vars(scenario)['effect_set'] = acting
@@ -221,7 +221,7 @@ def clean_marks(gear: str, seed: int, minutes: float) -> list[FloatArray]:
     """Marks (w, r, p) that the candidates would leave in each stretch of a clean tow of the boards
     of the gear file.
     """
-    chance = np.random.default_rng(seed)
+    rng = np.random.default_rng(seed)
     found: list[FloatArray] = []
 
     def keep(stretch: WatchedStretch) -> None:
@@ -231,10 +231,10 @@ def clean_marks(gear: str, seed: int, minutes: float) -> list[FloatArray]:
     with TemporaryDirectory() as folder:
         record = MeshResolution(COARSEST).model(gear)
         boards = record.board.coefficients.array()
-        scenario = random_course(Path(folder), record, minutes, chance)
+        scenario = random_course(Path(folder), record, minutes, rng)
         monitor = OnsetMonitor(
             load_gear(Path(folder) / 'gear.yaml'),
-            drawn_knowledge(record, boards, chance),
+            drawn_knowledge(record, boards, rng),
             on_stretch=keep,
         )
         for samples, _ in towed_samples(scenario, NO_EFFECTS):
@@ -250,14 +250,12 @@ def _judged(course: WatchedCourse, from_s: float, until_s: float) -> float:
     return LIVE.stretch_s * float(np.sum(np.isfinite(course.rarities[between])))
 
 
-def _beginning(
-    effect: Effect, begin_s: float, chance: np.random.Generator
-) -> tuple[EffectSet, float]:
+def _beginning(effect: Effect, begin_s: float, rng: np.random.Generator) -> tuple[EffectSet, float]:
     """Effect set of one that begins, and its size."""
     ((name, steady),) = STEADY_SIZES[effect.name].items()
     (place,) = (n for n, own in enumerate(effect.parameters) if own.name == name)
     own = effect.parameters[place]
-    sign = chance.choice((-1.0, 1.0))
+    sign = rng.choice((-1.0, 1.0))
     if not own.low <= own.neutral + sign * TIMES * steady <= own.high:
         sign = -sign
     size = sign * TIMES * steady

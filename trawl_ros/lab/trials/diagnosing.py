@@ -1,6 +1,8 @@
 """Blind diagnosis of a trial from a file of windows, or a folder of bags."""
 
-from dataclasses import dataclass
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from trawl_ros.core.files import write_json
@@ -8,11 +10,24 @@ from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.result import result
 from trawl_ros.estimation.bag_windows import BagTask, read_tow
 from trawl_ros.estimation.tows import numbered
+from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.trials.windows_file import read_windows
 from trawl_ros.records.topics import NAMESPACE
+
+
+def write_windows(path: Path, windows: Sequence[SteadyWindow]) -> None:
+    """Write windows, whole or not at all."""
+    write_json(path, [asdict(window) for window in windows])
+
+
+def read_windows(path: Path) -> tuple[SteadyWindow, ...]:
+    """Read windows."""
+    records = json.loads(path.read_text(encoding='utf-8'))
+    return tuple(
+        SteadyWindow(**{**record, 'track': GroundTrack(**record['track'])}) for record in records
+    )
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,11 +27,14 @@ from trawl_ros.lab.trials.readings import (
     steady_windows,
     wrong_by,
 )
+from trawl_ros.lab.trials.recording import record_tows
 from trawl_ros.lab.trials.strength import Likelihood, likelihood
-from trawl_ros.lab.trials.tows import PLANS, BlindTrialPlan
+from trawl_ros.lab.trials.towing import Course, quasi_steady, towed_in_time
+from trawl_ros.lab.trials.tows import PLANS, BlindTrialPlan, PlannedTow
 from trawl_ros.lab.trials.trial import Key, Spec
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.stepper import StepFailed
 from trawl_ros.solver.trimming.drawn_board import fastened_as
 
 WRONG_BY = 0.3
@@ -143,7 +148,7 @@ def floor_of(
 
 def windows_of(
     tows: Sequence[Sequence[LinearisedState]],
-    chance: np.random.Generator,
+    rng: np.random.Generator,
     plan: BlindTrialPlan,
     sensors: Sensors,
     *,
@@ -156,7 +161,7 @@ def windows_of(
     ----------
     tows
         Observables of the plant.
-    chance
+    rng
         Generator of random numbers.
     plan
         Tows of the trial.
@@ -165,30 +170,30 @@ def windows_of(
     first, first_tow
         Numbers of the first window and the first tow.
     """
-    jittered = [[_jittered(look, chance) for look in tow] for tow in tows]
-    windows = steady_windows(jittered, sensors, chance, first_tow)
+    jittered = [[_jittered(look, rng) for look in tow] for tow in tows]
+    windows = steady_windows(jittered, sensors, rng, first_tow)
     states = [(tow, place) for tow in plan.tows for place in range(len(tow.states))]
     seen = tuple(
-        _as_seen(window, number, tow.moment(place), chance)
+        _as_seen(window, number, tow.moment(place), rng)
         for number, (window, (tow, place)) in enumerate(zip(windows, states, strict=True), first)
     )
     return seen, tuple(look for tow in jittered for look in tow)
 
 
-def _jittered(look: LinearisedState, chance: np.random.Generator) -> LinearisedState:
-    length = LENGTH_JITTER * chance.standard_normal()
-    speed = SPEED_JITTER * chance.standard_normal()
+def _jittered(look: LinearisedState, rng: np.random.Generator) -> LinearisedState:
+    length = LENGTH_JITTER * rng.standard_normal()
+    speed = SPEED_JITTER * rng.standard_normal()
     state = (look.state[0] + length, look.state[1] + speed)
     values = look.values + look.by_inputs @ np.array([length, length, speed])
     return replace(look, state=state, values=values)
 
 
 def _as_seen(
-    window: SteadyWindow, number: int, at: Situation, chance: np.random.Generator
+    window: SteadyWindow, number: int, at: Situation, rng: np.random.Generator
 ) -> SteadyWindow:
     # Windows without a channel that is required are none.
     lost = {
-        name for name in window.means if not CHANNELS[name].required and chance.uniform() < DROPOUTS
+        name for name in window.means if not CHANNELS[name].required and rng.uniform() < DROPOUTS
     }
 
     def kept(values: Mapping[str, float]) -> dict[str, float]:
@@ -198,7 +203,7 @@ def _as_seen(
         window,
         index=number,
         state=number,
-        hours=at.hours + HOURS_JITTER * chance.uniform(-1.0, 1.0),
+        hours=at.hours + HOURS_JITTER * rng.uniform(-1.0, 1.0),
         track=GroundTrack(0.0 if at.sense > 0.0 else np.pi, 0.0, 0.0, False),
         means=kept(window.means),
         noise=kept(window.noise),
@@ -224,3 +229,69 @@ def likelihood_of(gear: str, cut: MeshResolution, seed: int, number: int, plan: 
     quiet = steady_windows(plant.towed((), tows), AS_STATED, np.random.default_rng(0))
     quiet = tuple(replace(window, index=place, state=place) for place, window in enumerate(quiet))
     return likelihood(plant, board_prior(cut.model(gear)), quiet, tows)
+
+
+FOLLOWED = 'followed'
+
+
+def proposed(diagnosis: Mapping[str, Any]) -> PlannedTow | None:
+    """Next tow by a diagnosis; None where it proposes none."""
+    for step in diagnosis['next_tow']:
+        if step['states']:
+            states = tuple((state['warp_length'], state['speed']) for state in step['states'])
+            return PlannedTow(states, eastward=not step['reciprocal'])
+    return None
+
+
+def tow_on(
+    spec: Spec,
+    gear: str,
+    cut: MeshResolution,
+    seed: int,
+    windows: Sequence[SteadyWindow],
+    tow: PlannedTow,
+) -> tuple[Key, tuple[SteadyWindow, ...] | None]:
+    """Add a tow to the windows of a trial, or say in the key why it cannot be towed."""
+    hiding = hide(spec, gear, cut, seed)
+    key = replace(hiding.key, spec=replace(spec, series=FOLLOWED))
+    plan = BlindTrialPlan((tow,), baseline=0)
+    towed = hiding.towed(plan)
+    if towed is None:
+        return replace(key, testable=False, why_not='cannot be towed'), None
+    more, _ = windows_of(
+        towed,
+        chance_of(spec, seed, FOLLOWED),
+        plan,
+        hiding.sensors,
+        first=len(windows),
+        first_tow=1 + max(window.tow for window in windows),
+    )
+    return key, (*windows, *more)
+
+
+def make_bags(spec: Spec, gear: str, cut: MeshResolution, seed: int, folder: Path) -> Key:
+    """Make a trial as bags in a folder, unless what is hidden is not possible."""
+    hiding = hide(spec, gear, cut, seed)
+    if not hiding.key.testable:
+        return hiding.key
+    try:
+        courses = _in_time(hiding) if spec.form == 'dynamic' else _steady(hiding)
+    except (NoSteadyState, StepFailed) as reason:
+        return replace(hiding.key, testable=False, why_not=f'cannot be towed: {reason}')
+    rng = chance_of(spec, seed, spec.form)
+    record_tows(folder, courses, hiding.plant.model.water, hiding.sensors, DROPOUTS, rng)
+    return hiding.key
+
+
+def _steady(hiding: SeededTrial) -> list[Course]:
+    plan = PLANS[hiding.key.spec.plan]
+    tows = hiding.plant.towed(hiding.effects, plan)
+    return [quasi_steady(tow, looks) for tow, looks in zip(plan.tows, tows, strict=True)]
+
+
+def _in_time(hiding: SeededTrial) -> list[Course]:
+    plan = PLANS[hiding.key.spec.plan]
+    return [
+        towed_in_time(hiding.plant.model, tow, () if number < plan.baseline else hiding.effects)
+        for number, tow in enumerate(plan.tows)
+    ]

@@ -77,13 +77,13 @@ class Plant:
         """
         return tuple(
             tuple(
-                self._look(tow, place, effects if number >= plan.baseline else ())
+                self._linearised(tow, place, effects if number >= plan.baseline else ())
                 for place in range(len(tow.states))
             )
             for number, tow in enumerate(plan.tows)
         )
 
-    def _look(
+    def _linearised(
         self, tow: PlannedTow, place: int, effects: Sequence[tuple[Hidden, float]]
     ) -> LinearisedState:
         at, clean = tow.moment(place), self.at(tow.states[place])
@@ -132,8 +132,8 @@ def draw_plant(gear: str, cut: MeshResolution, seed: int, number: int) -> Plant:
     TrawlError
         If none of many boards can be towed.
     """
-    chance = np.random.default_rng([seed, number, *b'plant'])
-    drawn = draw_board(cut.plant(gear), STATES, chance, DRAW, build=_built)
+    rng = np.random.default_rng([seed, number, *b'plant'])
+    drawn = draw_board(cut.plant(gear), STATES, rng, DRAW, build=_built)
     clean = {state: _clean(drawn.model, state, found) for state, found in drawn.steady.items()}
     return Plant(drawn.model, drawn.coefficients, clean)
 

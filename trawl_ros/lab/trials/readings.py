@@ -51,12 +51,12 @@ class SensorKind:
         correlated = self.correlated**2 * float(np.mean(self.lag**apart))
         return float(np.sqrt(self.white**2 / self.number + correlated))
 
-    def noise(self, chance: np.random.Generator, number: int | None = None) -> FloatArray:
+    def noise(self, rng: np.random.Generator, number: int | None = None) -> FloatArray:
         """Errors (n,) of so many readings, those of a window if None."""
-        drawn = chance.standard_normal(self.number if number is None else number)
+        drawn = rng.standard_normal(self.number if number is None else number)
         drawn[1:] *= np.sqrt(1.0 - self.lag**2)
         slow = lfilter([1.0], [1.0, -self.lag], drawn)
-        noise: FloatArray = self.white * chance.standard_normal(len(drawn)) + self.correlated * slow
+        noise: FloatArray = self.white * rng.standard_normal(len(drawn)) + self.correlated * slow
         return noise
 
 
@@ -107,17 +107,17 @@ SAME_IN_ALL_STATES = replace(AS_STATED, state_share=0.0)
 """As stated, but for what changes with the state."""
 
 
-def wrong_by(part: float, chance: np.random.Generator) -> Sensors:
+def wrong_by(part: float, rng: np.random.Generator) -> Sensors:
     """Return sensors each of which is either worse or better than stated by this share."""
-    return Sensors({name: 1.0 + part * chance.choice((-1.0, 1.0)) for name in KINDS})
+    return Sensors({name: 1.0 + part * rng.choice((-1.0, 1.0)) for name in KINDS})
 
 
 def drawn_errors(
-    sensors: Sensors, chance: np.random.Generator
+    sensors: Sensors, rng: np.random.Generator
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Draw offsets and errors of scale of all channels for a tow."""
     offset, scale = (
-        {name: sensors.factor(name) * std * chance.standard_normal() for name, std in stds}
+        {name: sensors.factor(name) * std * rng.standard_normal() for name, std in stds}
         for stds in (
             [(name, CHANNELS[name].bias) for name in NAMES],
             [(name, CHANNELS[name].bias_fraction) for name in NAMES],
@@ -129,7 +129,7 @@ def drawn_errors(
 def steady_windows(
     tows: Sequence[Sequence[LinearisedState]],
     sensors: Sensors,
-    chance: np.random.Generator,
+    rng: np.random.Generator,
     first_tow: int = 0,
 ) -> tuple[SteadyWindow, ...]:
     """One window of each steady state, as the finder would find it.
@@ -145,7 +145,7 @@ def steady_windows(
         Observables of the plant, tow by tow.
     sensors
         True errors of the instruments.
-    chance
+    rng
         Generator of random numbers.
     first_tow
         Number of the first tow.
@@ -154,15 +154,15 @@ def steady_windows(
     windows = []
     length_ns = round(WindowOptions.window_s * SECOND)
     for tow, looks in enumerate(tows, first_tow):
-        offset, scale = drawn_errors(sensors, chance)
+        offset, scale = drawn_errors(sensors, rng)
         for look in looks:
             means, noise, counts = {}, {}, {}
             for name in NAMES:
                 truth = _truth(look, name)
-                own = sensors.state_std(name, truth) * chance.standard_normal()
+                own = sensors.state_std(name, truth) * rng.standard_normal()
                 centre = (1.0 + scale[name]) * truth + offset[name] + own
                 kind = KINDS[group_of(name)]
-                readings = centre + sensors.factor(name) * kind.noise(chance)
+                readings = centre + sensors.factor(name) * kind.noise(rng)
                 means[name] = float(readings.mean())
                 noise[name] = error_of_mean(readings, kind.stated)
                 counts[name] = len(readings)

@@ -9,8 +9,8 @@ from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.fit.error_terms import group_of
-from trawl_ros.lab.trials.course import HOLD_S, Course
 from trawl_ros.lab.trials.readings import KINDS, NAMES, Sensors, drawn_errors
+from trawl_ros.lab.trials.towing import HOLD_S, Course
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.model.water import Water
@@ -48,7 +48,7 @@ def record_tows(
     water: Water,
     sensors: Sensors,
     dropouts: float,
-    chance: np.random.Generator,
+    rng: np.random.Generator,
 ) -> None:
     """Write one bag per tow, ``tow_01`` and so on, each from a stamp of its own.
 
@@ -64,14 +64,14 @@ def record_tows(
         True errors of the instruments.
     dropouts
         Part of the states in which an optional channel falls silent.
-    chance
+    rng
         Generator of random numbers.
     """
     folder.mkdir()
     for number, course in enumerate(courses, start=1):
-        found = _readings(course, sensors, dropouts, chance)
-        current = CURRENT * chance.standard_normal(2)
-        samples = [*_samples(found, water), *_ship(course, found, current, chance)]
+        found = _readings(course, sensors, dropouts, rng)
+        current = CURRENT * rng.standard_normal(2)
+        samples = [*_samples(found, water), *_ship(course, found, current, rng)]
         start = number * 86_400 * SECOND
         with BagWriter(folder / f'tow_{number:02}') as bag:
             for sample in sorted(samples, key=lambda sample: sample.stamp):
@@ -82,9 +82,9 @@ def record_tows(
 
 
 def _readings(
-    course: Course, sensors: Sensors, dropouts: float, chance: np.random.Generator
+    course: Course, sensors: Sensors, dropouts: float, rng: np.random.Generator
 ) -> dict[str, Readings]:
-    offset, scale = drawn_errors(sensors, chance)
+    offset, scale = drawn_errors(sensors, rng)
     # When one state is left for the next.
     left = np.add(course.moments, HOLD_S)[:-1]
     found = {}
@@ -96,8 +96,8 @@ def _readings(
             truth = inputs[:, INPUTS.index(name)]
         else:
             truth = values[:, OBSERVABLES.index(name)]
-        noise = sensors.factor(name) * kind.noise(chance, len(times))
-        of_state = chance.standard_normal(len(course.moments))
+        noise = sensors.factor(name) * kind.noise(rng, len(times))
+        of_state = rng.standard_normal(len(course.moments))
         of_state *= [
             sensors.state_std(name, value) for value in np.interp(course.moments, times, truth)
         ]
@@ -106,7 +106,7 @@ def _readings(
         heard = np.ones(len(times), dtype=bool)
         for moment in course.moments:
             # Without a channel that is required there would be no window.
-            if chance.uniform() < dropouts and not CHANNELS[name].required:
+            if rng.uniform() < dropouts and not CHANNELS[name].required:
                 heard &= np.abs(times - moment) > SILENT_S
         found[name] = times[heard], readings[heard]
     return found
@@ -144,15 +144,15 @@ def _together(first: Readings, second: Readings) -> Iterator[tuple[float, float,
 
 
 def _ship(
-    course: Course, found: dict[str, Readings], current: FloatArray, chance: np.random.Generator
+    course: Course, found: dict[str, Readings], current: FloatArray, rng: np.random.Generator
 ) -> Iterator[Sample]:
     ahead = np.array([np.cos(course.heading), np.sin(course.heading)])
     times, _ = found['speed']
     inputs, _ = course.at(times)
     for time, speed in zip(times, inputs[:, 2], strict=True):
-        heading = course.heading + HEADING_STD * chance.standard_normal()
+        heading = course.heading + HEADING_STD * rng.standard_normal()
         yield HeadingSample(_stamp(time), heading, HEADING_STD)
-        ground = speed * ahead + current + GROUND_STD * chance.standard_normal(2)
+        ground = speed * ahead + current + GROUND_STD * rng.standard_normal(2)
         yield VelocitySample(_stamp(time), 'ground', np.array([*ground, 0.0]), float('nan'))
 
 

@@ -36,7 +36,7 @@ ALARM = 0.01 / 30.0
 SIGMAS = float(norm.isf(0.5 * ALARM)) + POWER
 """An effect this many standard deviations strong is seen in 80 % of trials."""
 
-ROUNDS = 10
+MAX_PROBES = 10
 """Of probing with a size near the one that is wanted, at most."""
 
 CLOSE = 0.05
@@ -69,7 +69,7 @@ class Likelihood:
         """
         most = hidden.most[0] if sign < 0.0 else hidden.most[1]
         size, low, high, enough = min(hidden.probe, most), 0.0, np.inf, np.inf
-        for _ in range(ROUNDS):
+        for _ in range(MAX_PROBES):
             try:
                 seen = self._sigmas(hidden, sign * size, beside_catalogue)
             except NoSteadyState:

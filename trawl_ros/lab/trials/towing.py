@@ -1,15 +1,16 @@
 """Simulation of planned tows: the gear hauled, veered and left to settle."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Parameter, Readings, Situation
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
-from trawl_ros.lab.trials.course import EARLY_S, HOLD_S, Course, settling_time
+from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.lab.trials.hidden_effects.hidden import Hidden
+from trawl_ros.lab.trials.linearised_plant import LinearisedState
 from trawl_ros.lab.trials.tows import PlannedTow
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
@@ -17,13 +18,85 @@ from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.simulation import Instant, Simulation, tow_of
 
+HOLD_S = 90.0
+"""A state is held so long after the moment for which it is planned, so that one window or two are
+found.
+"""
+
+AWAY_M = 150.0
+"""Warps are so much shorter when a tow begins: before the first state nothing is steady."""
+
+EARLY_S = 60.0
+"""And reached so much earlier than it would have to be."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """Course of a tow, second by second.
+
+    Attributes
+    ----------
+    times : (n,) array
+        Since it began, s.
+    inputs : (n, 3) array
+        Both warp lengths (m) and speed (m/s) as counters and log would show them.
+    values : (n, 22) array
+        Observables as sensors would show them.
+    heading
+        ENU yaw, rad.
+    moments
+        Time (s) of each state.
+    """
+
+    times: FloatArray
+    inputs: FloatArray
+    values: FloatArray
+    heading: float
+    moments: tuple[float, ...]
+
+    def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Inputs (m, 3) and values (m, 22) at other times (m,)."""
+        inputs, values = (
+            np.column_stack([np.interp(times, self.times, column) for column in table.T])
+            for table in (self.inputs, self.values)
+        )
+        return inputs, values
+
+
+def settling_time(length: float, speed: float) -> float:
+    """Settling time (s) before a state counts as steady."""
+    options = WindowOptions()
+    passages = options.settle_passages * (length + options.net_length) / speed
+    return max(options.settle_s, min(passages, options.longest_settle_s))
+
+
+def quasi_steady(tow: PlannedTow, looks: Sequence[LinearisedState]) -> Course:
+    """Quasi-steady course: one steady state after the other, also between them."""
+    length, speed = looks[0].state
+    shooting = replace(looks[0], state=(length - AWAY_M, speed))
+    times, rows, moments = [0.0], [shooting], []
+    for place, look in enumerate(looks):
+        moment = 3600.0 * tow.moment(place).hours
+        moments.append(moment)
+        reached = moment - EARLY_S - settling_time(*look.state)
+        times += [max(reached, times[-1]), moment + HOLD_S]
+        rows += [look, look]
+    return Course(
+        np.array(times),
+        np.array([look.inputs for look in rows]),
+        np.array([look.values for look in rows]),
+        0.0 if tow.eastward else np.pi,
+        tuple(moments),
+    )
+
+
 HAULING_SPEED = 2.4
 """Warps are hauled and paid out at this speed (m/s): at less, boards lose their lift meanwhile."""
 
 PERIOD_S, SEEN_S = 0.25, 1.0
 """Of the simulation, and how often it is looked at."""
 
-ROUNDS = 20
+FIXED_POINT_ITERATIONS = 20
 
 
 @dataclass(frozen=True)
@@ -115,7 +188,7 @@ def _shown(now: Instant, there: EffectSet, heading: float, hours: float) -> Floa
     """Indicated inputs by fixed-point iteration, from the true ones."""
     towed = np.array([now.winches[0].length, now.winches[1].length, now.ship.speed])
     shown = towed
-    for _ in range(ROUNDS):
+    for _ in range(FIXED_POINT_ITERATIONS):
         at = Situation((shown[0], shown[1], shown[2]), heading, hours=hours)
         shown = shown + towed - there.apply_to_inputs(shown, at)
     return shown

@@ -22,9 +22,9 @@ USUAL_SPEED = 2.2
 USUAL_LENGTH = 500.0
 
 
-def current_shear(chance: np.random.Generator) -> Hidden:
+def current_shear(rng: np.random.Generator) -> Hidden:
     """A shear that is curved: a power of the depth."""
-    power = chance.uniform(0.8, 1.3)
+    power = rng.uniform(0.8, 1.3)
     depths = np.linspace(0.0, 800.0, 17)
     profile = 3.0 * (depths / 300.0) ** power
 
@@ -35,9 +35,9 @@ def current_shear(chance: np.random.Generator) -> Hidden:
     return Hidden('current_shear', 'm/s per 100 m', 0.02, (0.2, 0.2), gear=gear)
 
 
-def cross_current(chance: np.random.Generator) -> Hidden:
+def cross_current(rng: np.random.Generator) -> Hidden:
     """A current across the track that begins somewhere and grows a little downward."""
-    top, growth = chance.uniform(10.0, 40.0), chance.uniform(-0.1, 0.2)
+    top, growth = rng.uniform(10.0, 40.0), rng.uniform(-0.1, 0.2)
     depths = np.array([0.0, top, top + 30.0, 500.0])
     profile = np.array([0.0, 0.0, 1.0, 1.0 + growth])
 
@@ -48,9 +48,9 @@ def cross_current(chance: np.random.Generator) -> Hidden:
     return Hidden('cross_current', 'm/s', 0.1, (0.5, 0.5), gear=gear)
 
 
-def speed_log(chance: np.random.Generator) -> Hidden:
+def speed_log(rng: np.random.Generator) -> Hidden:
     """A log with an error of scale that differs a little with the speed."""
-    bend = chance.uniform(-0.3, 0.3)
+    bend = rng.uniform(-0.3, 0.3)
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         port, starboard, speed = inputs
@@ -60,9 +60,9 @@ def speed_log(chance: np.random.Generator) -> Hidden:
     return Hidden('speed_log', '', 0.05, (0.25, 0.25), towed=towed)
 
 
-def warp_strumming(chance: np.random.Generator) -> Hidden:
+def warp_strumming(rng: np.random.Generator) -> Hidden:
     """Strumming that goes with the Reynolds number, and is strongest near the ship."""
-    power, tilt = chance.uniform(-0.5, 0.5), chance.uniform(-0.2, 0.2)
+    power, tilt = rng.uniform(-0.5, 0.5), rng.uniform(-0.2, 0.2)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         on = model.warp_side >= 0
@@ -77,9 +77,9 @@ def warp_strumming(chance: np.random.Generator) -> Hidden:
     return Hidden('warp_strumming', '', 0.3, (0.3, 1.5), gear=gear)
 
 
-def counter_scale(chance: np.random.Generator) -> Hidden:
+def counter_scale(rng: np.random.Generator) -> Hidden:
     """Counters that slip, and the more, the more warp is out and pulls."""
-    bend = chance.uniform(-0.1, 0.2)
+    bend = rng.uniform(-0.1, 0.2)
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         slip = size * (1.0 + bend * (inputs[:2] / USUAL_LENGTH - 1.0))
@@ -88,9 +88,9 @@ def counter_scale(chance: np.random.Generator) -> Hidden:
     return Hidden('counter_scale', '', 0.03, (0.15, 0.15), towed=towed)
 
 
-def counter_offset(chance: np.random.Generator) -> Hidden:
+def counter_offset(rng: np.random.Generator) -> Hidden:
     """Counters that were set to zero at another mark, not quite alike on both sides."""
-    uneven = chance.uniform(-0.03, 0.03)
+    uneven = rng.uniform(-0.03, 0.03)
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         sides = size * np.array([1.0 + uneven, 1.0 - uneven])
@@ -99,9 +99,9 @@ def counter_offset(chance: np.random.Generator) -> Hidden:
     return Hidden('counter_offset', 'm', 10.0, (50.0, 50.0), towed=towed)
 
 
-def warp_asymmetry(chance: np.random.Generator) -> Hidden:
+def warp_asymmetry(rng: np.random.Generator) -> Hidden:
     """A port warp that is longer, and the more, the more is out."""
-    bend = chance.uniform(-0.2, 0.2)
+    bend = rng.uniform(-0.2, 0.2)
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         more = size * (1.0 + bend * (inputs[0] / USUAL_LENGTH - 1.0))
@@ -110,10 +110,10 @@ def warp_asymmetry(chance: np.random.Generator) -> Hidden:
     return Hidden('warp_asymmetry', 'm', 3.0, (15.0, 15.0), towed=towed)
 
 
-def catch_build_up(chance: np.random.Generator) -> Hidden:
+def catch_build_up(rng: np.random.Generator) -> Hidden:
     """A catch that comes in steps."""
-    steps = np.sort(chance.uniform(0.0, 2.8, 8))
-    sizes = chance.gamma(2.0, size=8)
+    steps = np.sort(rng.uniform(0.0, 2.8, 8))
+    sizes = rng.gamma(2.0, size=8)
     sizes *= 2.8 / sizes.sum()
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -125,9 +125,9 @@ def catch_build_up(chance: np.random.Generator) -> Hidden:
     return Hidden('catch_build_up', 'm² per h', 1.0, (0.0, 20.0), gear=gear)
 
 
-def net_drag(chance: np.random.Generator) -> Hidden:
+def net_drag(rng: np.random.Generator) -> Hidden:
     """A fouled net whose drag grows with nearly the square of the speed, its belly fouled most."""
-    power = chance.uniform(-0.1, 0.1)
+    power = rng.uniform(-0.1, 0.1)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         return model.with_net(1.0 + size * (at.speed / USUAL_SPEED) ** power, 1.0)
@@ -154,9 +154,9 @@ class Stalling:
         return bent
 
 
-def board_stall(chance: np.random.Generator) -> Hidden:
+def board_stall(rng: np.random.Generator) -> Hidden:
     """Stall from an angle and with a power that are none of the catalogue's."""
-    onset, power = np.radians(chance.uniform(14.0, 16.0)), chance.uniform(1.8, 2.2)
+    onset, power = np.radians(rng.uniform(14.0, 16.0)), rng.uniform(1.8, 2.2)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         return model.with_board(bend=Stalling(size, onset, power))
@@ -180,9 +180,9 @@ class Leaning:
         return bent
 
 
-def tilt_lift(chance: np.random.Generator) -> Hidden:
+def tilt_lift(rng: np.random.Generator) -> Hidden:
     """Lift that feels the lean, not quite linearly."""
-    bend = chance.uniform(-0.5, 0.5)
+    bend = rng.uniform(-0.5, 0.5)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         return model.with_board(bend=Leaning(size, bend))
@@ -190,9 +190,9 @@ def tilt_lift(chance: np.random.Generator) -> Hidden:
     return Hidden('tilt_lift', '1/rad', 0.4, (2.0, 2.0), gear=gear)
 
 
-def gear_weight(chance: np.random.Generator) -> Hidden:
+def gear_weight(rng: np.random.Generator) -> Hidden:
     """Boards of another weight, or clumps."""
-    boards = bool(chance.integers(2))
+    boards = bool(rng.integers(2))
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         more = size / model.water.gravity
@@ -205,10 +205,10 @@ def gear_weight(chance: np.random.Generator) -> Hidden:
     return Hidden('gear_weight', 'N', 1000.0, (5000.0, 5000.0), gear=gear)
 
 
-def depth_sensor(chance: np.random.Generator) -> Hidden:
+def depth_sensor(rng: np.random.Generator) -> Hidden:
     """Depth sensors off by metres, at the doors, at the net, or more and more at all."""
-    kind = ('doors', 'net', 'drift')[int(chance.integers(3))]
-    bend = chance.uniform(0.8, 1.2)
+    kind = ('doors', 'net', 'drift')[int(rng.integers(3))]
+    bend = rng.uniform(0.8, 1.2)
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         names = {'doors': DOORS, 'net': ('net_depth',), 'drift': DEPTHS}[kind]
@@ -219,9 +219,9 @@ def depth_sensor(chance: np.random.Generator) -> Hidden:
     return Hidden('depth_sensor', 'm', 3.0, (most, most), shown=shown)
 
 
-def tension_cell(chance: np.random.Generator) -> Hidden:
+def tension_cell(rng: np.random.Generator) -> Hidden:
     """Cells with another slope, which bends a little."""
-    bend = chance.uniform(-0.1, 0.1)
+    bend = rng.uniform(-0.1, 0.1)
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         return readings | {
@@ -232,9 +232,9 @@ def tension_cell(chance: np.random.Generator) -> Hidden:
     return Hidden('tension_cell', '', 0.1, (0.2, 0.2), shown=shown)
 
 
-def spread_sensor(chance: np.random.Generator) -> Hidden:
+def spread_sensor(rng: np.random.Generator) -> Hidden:
     """Sound that travels at another speed than the sensor takes it to."""
-    bend = chance.uniform(-0.1, 0.1)
+    bend = rng.uniform(-0.1, 0.1)
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         spread = readings['door_spread']
@@ -243,9 +243,9 @@ def spread_sensor(chance: np.random.Generator) -> Hidden:
     return Hidden('spread_sensor', '', 0.05, (0.15, 0.15), shown=shown)
 
 
-def heave(chance: np.random.Generator) -> Hidden:
+def heave(rng: np.random.Generator) -> Hidden:
     """A sea that goes down or gets up during the tows."""
-    change = chance.uniform(-0.1, 0.1)
+    change = rng.uniform(-0.1, 0.1)
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         variance = size * (1.0 + change * at.hours)
@@ -272,9 +272,9 @@ class Drag:
         return forces
 
 
-def bottom_contact(chance: np.random.Generator) -> Hidden:
+def bottom_contact(rng: np.random.Generator) -> Hidden:
     """A softer bottom, which carries less than it holds."""
-    carry, depth = chance.uniform(0.7, 1.1), chance.uniform(150.0, 200.0)
+    carry, depth = rng.uniform(0.7, 1.1), rng.uniform(150.0, 200.0)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         ends = np.array([model.layout.footrope[0], model.layout.footrope[-1]])

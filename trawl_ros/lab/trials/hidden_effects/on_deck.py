@@ -64,7 +64,7 @@ class DeckCause:
     probe: float
     most: tuple[float, float]
 
-    def __call__(self, chance: np.random.Generator) -> Hidden:
+    def __call__(self, rng: np.random.Generator) -> Hidden:
         """Return the hidden effect; nothing of it is drawn."""
 
         def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -156,9 +156,9 @@ BY_KEY = (
 """Causes that change a key of the gear file."""
 
 
-def port_board_turned(chance: np.random.Generator) -> Hidden:
+def port_board_turned(rng: np.random.Generator) -> Hidden:
     """One board alone that was shackled into another hole."""
-    axis = int(chance.integers(3))
+    axis = int(rng.integers(3))
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         turn = np.zeros((2, 3))
@@ -169,7 +169,7 @@ def port_board_turned(chance: np.random.Generator) -> Hidden:
     return Hidden('port_board_turned', 'deg', 1.0, (8.0, 8.0), gear=gear)
 
 
-def port_board_lift(chance: np.random.Generator) -> Hidden:
+def port_board_lift(rng: np.random.Generator) -> Hidden:
     """A port board that is bent or has lost a slat."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -178,7 +178,7 @@ def port_board_lift(chance: np.random.Generator) -> Hidden:
     return Hidden('port_board_lift', '', 0.1, (0.6, 0.6), gear=gear)
 
 
-def starboard_board_drag(chance: np.random.Generator) -> Hidden:
+def starboard_board_drag(rng: np.random.Generator) -> Hidden:
     """A starboard board that drags something along."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -187,7 +187,7 @@ def starboard_board_drag(chance: np.random.Generator) -> Hidden:
     return Hidden('starboard_board_drag', '', 0.1, (0.0, 1.0), gear=gear)
 
 
-def starboard_bridle(chance: np.random.Generator) -> Hidden:
+def starboard_bridle(rng: np.random.Generator) -> Hidden:
     """An upper bridle of one side that parted and was knotted."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -199,7 +199,7 @@ def starboard_bridle(chance: np.random.Generator) -> Hidden:
     return Hidden('starboard_bridle', 'm', 1.0, (10.0, 3.0), gear=gear)
 
 
-def port_clump_lost(chance: np.random.Generator) -> Hidden:
+def port_clump_lost(rng: np.random.Generator) -> Hidden:
     """A clump of one side that lost chain."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -210,7 +210,7 @@ def port_clump_lost(chance: np.random.Generator) -> Hidden:
     return Hidden('port_clump_lost', 'N', 1000.0, (5e3, 11e3), gear=gear)
 
 
-def doors_swapped(chance: np.random.Generator) -> Hidden:
+def doors_swapped(rng: np.random.Generator) -> Hidden:
     """Sensors that hang on the wrong doors, all of them or none."""
     quantities = ('door_depth', 'pitch', 'roll')
 
@@ -224,7 +224,7 @@ def doors_swapped(chance: np.random.Generator) -> Hidden:
     return Hidden('doors_swapped', '', 1.0, (0.0, 1.0), shown=shown, whole=True)
 
 
-def cells_one_side(chance: np.random.Generator) -> Hidden:
+def cells_one_side(rng: np.random.Generator) -> Hidden:
     """Cells on each other's plugs, all of it or none: only unequal sides show it."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
@@ -236,9 +236,9 @@ def cells_one_side(chance: np.random.Generator) -> Hidden:
     return Hidden('cells_swapped', '', 1.0, (0.0, 1.0), shown=shown, whole=True)
 
 
-def pitch_askew(chance: np.random.Generator) -> Hidden:
+def pitch_askew(rng: np.random.Generator) -> Hidden:
     """An attitude sensor of one door that sits askew, mostly in pitch."""
-    roll = chance.uniform(-0.2, 0.2)
+    roll = rng.uniform(-0.2, 0.2)
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         return readings | {
@@ -249,7 +249,7 @@ def pitch_askew(chance: np.random.Generator) -> Hidden:
     return Hidden('pitch_askew', 'rad', 0.05, (0.35, 0.35), shown=shown)
 
 
-def crabbing(chance: np.random.Generator) -> Hidden:
+def crabbing(rng: np.random.Generator) -> Hidden:
     """A ship that crabs through the water, as long as she heads the same way in the wind."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:

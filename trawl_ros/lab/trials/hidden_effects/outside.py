@@ -36,7 +36,7 @@ class MoreLoad:
         return bent
 
 
-def net_weight(chance: np.random.Generator) -> Hidden:
+def net_weight(rng: np.random.Generator) -> Hidden:
     """Sand, mud or water-logged floats in the net."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -45,9 +45,9 @@ def net_weight(chance: np.random.Generator) -> Hidden:
     return Hidden('net_weight', '', 0.3, (0.8, 4.0), gear=gear)
 
 
-def jet(chance: np.random.Generator) -> Hidden:
+def jet(rng: np.random.Generator) -> Hidden:
     """A layer of the sea that moves along the track."""
-    middle, width = chance.uniform(90.0, 150.0), chance.uniform(25.0, 40.0)
+    middle, width = rng.uniform(90.0, 150.0), rng.uniform(25.0, 40.0)
     depths = np.linspace(0.0, 400.0, 41)
     profile = np.exp(-0.5 * ((depths - middle) / width) ** 2)
 
@@ -58,7 +58,7 @@ def jet(chance: np.random.Generator) -> Hidden:
     return Hidden('jet', 'm/s', 0.1, (0.8, 0.8), gear=gear)
 
 
-def bridle_weed(chance: np.random.Generator) -> Hidden:
+def bridle_weed(rng: np.random.Generator) -> Hidden:
     """Weed on the bridles of one side."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -72,9 +72,9 @@ def bridle_weed(chance: np.random.Generator) -> Hidden:
     return Hidden('bridle_weed', '', 1.0, (0.0, 20.0), gear=gear)
 
 
-def block_angle(chance: np.random.Generator) -> Hidden:
+def block_angle(rng: np.random.Generator) -> Hidden:
     """Tension cells in blocks that hang otherwise with short warps than when calibrated."""
-    power = chance.uniform(0.7, 1.3)
+    power = rng.uniform(0.7, 1.3)
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         steeper = (USUAL_LENGTH / at.inputs[0]) ** power - 1.0
@@ -83,7 +83,7 @@ def block_angle(chance: np.random.Generator) -> Hidden:
     return Hidden('block_angle', '', 0.1, (0.5, 0.5), shown=shown)
 
 
-def counter_drift(chance: np.random.Generator) -> Hidden:
+def counter_drift(rng: np.random.Generator) -> Hidden:
     """Counters that lose a little at each haul, so that they drift through the tow."""
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
@@ -92,7 +92,7 @@ def counter_drift(chance: np.random.Generator) -> Hidden:
     return Hidden('counter_drift', 'm per h', 10.0, (60.0, 60.0), towed=towed)
 
 
-def port_depth_sensor(chance: np.random.Generator) -> Hidden:
+def port_depth_sensor(rng: np.random.Generator) -> Hidden:
     """A depth sensor of one board that shows too much, the deeper it is."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
@@ -102,7 +102,7 @@ def port_depth_sensor(chance: np.random.Generator) -> Hidden:
     return Hidden('port_depth_sensor', '', 0.03, (0.3, 0.3), shown=shown)
 
 
-def starboard_cell(chance: np.random.Generator) -> Hidden:
+def starboard_cell(rng: np.random.Generator) -> Hidden:
     """A tension cell of one side alone."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
@@ -111,7 +111,7 @@ def starboard_cell(chance: np.random.Generator) -> Hidden:
     return Hidden('starboard_cell', '', 0.1, (0.5, 0.5), shown=shown)
 
 
-def pitch_mount(chance: np.random.Generator) -> Hidden:
+def pitch_mount(rng: np.random.Generator) -> Hidden:
     """Attitude sensors that were mounted askew, and turn in their clamps."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
@@ -122,7 +122,7 @@ def pitch_mount(chance: np.random.Generator) -> Hidden:
     return Hidden('pitch_mount', 'rad per h', 0.02, (0.3, 0.3), shown=shown)
 
 
-def opening_by_depth(chance: np.random.Generator) -> Hidden:
+def opening_by_depth(rng: np.random.Generator) -> Hidden:
     """A sonar whose picture of the opening is stretched with depth."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
@@ -133,7 +133,7 @@ def opening_by_depth(chance: np.random.Generator) -> Hidden:
     return Hidden('opening_by_depth', 'per 100 m', 0.1, (0.6, 0.6), shown=shown)
 
 
-def spread_by_hours(chance: np.random.Generator) -> Hidden:
+def spread_by_hours(rng: np.random.Generator) -> Hidden:
     """A spread sensor whose clock drifts."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
