@@ -160,7 +160,7 @@ def test_costs_are_held_against_what_is_asked():
 
 @pytest.mark.slow
 def test_a_trial_is_made_reported_and_kept(tmp_path):
-    plan = CoveragePlan(seed=1, coverage=1, bound=0, mouth=0, around=12, tows=1, trials_only=True)
+    plan = CoveragePlan(coverage=1, bound=0, mouth=0, around=12, tows=1, trials_only=True)
     rows = run_study(STUDY, plan, Work(tmp_path))
     text = (tmp_path / 'identification.md').read_text()
     assert all(row.what in text for row in rows)
