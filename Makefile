@@ -5,12 +5,16 @@ SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help demo check quick test tests test-slow test-view coverage docs promises fuzz lint lock clean
+.PHONY: help demo check quick test tests test-slow test-view study endurance coverage docs promises fuzz lint lock clean
 
 # Any of these may be given on the command line: make PYTHON=python3.12 test
 PYTHON ?=
 DEMO := out/demo
 SITE := out/site
+# A study with its options, and the long tests of one folder.
+NAME :=
+ARGS :=
+TESTS :=
 MINUTES := 60
 # Two more than the cores of a small machine: tests of nodes wait for half of their time.
 WORKERS := 4
@@ -47,6 +51,8 @@ help:
 	@echo 'make check      style, types, imports and the quick tests'
 	@echo 'make test       style, types and all tests but the long ones'
 	@echo 'make test-slow  the long tests: commands that take minutes among them'
+	@echo 'make study      one long run of the whole chain: NAME=coverage ARGS=--small'
+	@echo 'make endurance  the long tests at full size, hours: TESTS=soak'
 	@echo 'make test-view  the tests of the viewer, which is installed before (170 MB)'
 	@echo 'make fuzz       give all readers hostile input for MINUTES: docs/studies/fuzz.json'
 	@echo 'make lint       style, types and layers only'
@@ -82,6 +88,12 @@ test-view: $(VENV)/ready
 	@ls /usr/share/vulkan/icd.d/*.json > /dev/null 2>&1 || \
 	    echo 'no graphics for the viewer: apt-get install mesa-vulkan-drivers'
 	@$(PYTEST) test/view test/promises -k 'view and not my_trial'
+
+study: $(VENV)/ready
+	@PYTHONPATH=test $(BIN)/python -m studies '$(NAME)' $(ARGS)
+
+endurance: $(VENV)/ready
+	@ENDURANCE=full $(BIN)/python -m pytest -m slow test/endurance/$(TESTS)
 
 promises: $(VENV)/ready
 	@$(BIN)/python -m pytest test/promises --write-promises

@@ -8,13 +8,13 @@ from click.testing import CliRunner
 
 from trawl_ros.cli.main import trawl
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.studies.discrepancy.hidden_effects.on_deck import with_other_law
-from trawl_ros.lab.studies.discrepancy.hidden_effects.other_keys import CAUSES
-from trawl_ros.lab.studies.discrepancy.trials.course import quasi_steady
-from trawl_ros.lab.studies.discrepancy.trials.plant import Plant
-from trawl_ros.lab.studies.discrepancy.trials.recording import record_tows
-from trawl_ros.lab.studies.discrepancy.trials.tows import BlindTrialPlan, PlannedTow
-from trawl_ros.lab.studies.identification.readings import AS_STATED
+from trawl_ros.lab.trials.hidden_effects.on_deck import with_other_law
+from trawl_ros.lab.trials.hidden_effects.other_keys import CAUSES
+from trawl_ros.lab.trials.plant import Plant
+from trawl_ros.lab.trials.readings import AS_STATED
+from trawl_ros.lab.trials.recording import record_tows
+from trawl_ros.lab.trials.towing import quasi_steady
+from trawl_ros.lab.trials.tows import BlindTrialPlan, PlannedTow
 from trawl_ros.model.gear_model import build_model
 
 GEAR = 'kaifuha'
@@ -39,13 +39,13 @@ def diagnosed(folder, cause, size):
 
     Gives ``diagnosis.json``, what was printed, and the folder of the reports.
     """
-    gear, chance = load_gear(GEAR), np.random.default_rng(SEED)
+    gear, rng = load_gear(GEAR), np.random.default_rng(SEED)
     model = with_other_law(build_model(gear))
     # Boards are those of the gear file, which are not those from which the fit starts.
     plant = Plant(model, model.coefficients, {})
-    tows = plant.towed([(CAUSES[cause](chance), size)], PLAN)
+    tows = plant.towed([(CAUSES[cause](rng), size)], PLAN)
     courses = [quasi_steady(tow, looks) for tow, looks in zip(PLAN.tows, tows, strict=True)]
-    record_tows(folder / 'bags', courses, plant.model.water, AS_STATED, 0.0, chance)
+    record_tows(folder / 'bags', courses, plant.model.water, AS_STATED, 0.0, rng)
     baseline, *examined = map(str, sorted((folder / 'bags').iterdir()))
     out = folder / 'out'
     words = ['diagnose', *examined, '--baseline', baseline, '--gear', GEAR, '--out', str(out)]

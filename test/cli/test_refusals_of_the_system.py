@@ -38,19 +38,15 @@ def test_a_full_disk_behind_the_standard_output(arguments: list[str], tmp_path: 
     [
         'tow nowhere', 'identify nowhere', 'diagnose nowhere', 'plan-trial nowhere',
         'plot nowhere', 'bag export nowhere', 'import-log {log} --mapping door_test_haul_log',
-        'validate', 'benchmark', 'study soak', 'study chaos', 'study sonar',
-        'study identification', 'study discrepancy', 'study counters --table {table}',
-        'study hostile', 'study robustness', 'demo',
+        'validate', 'benchmark', 'demo',
     ],
 )  # fmt: skip
 def test_a_folder_that_cannot_be_written_is_told_before_the_work(words, place, tmp_path) -> None:
     (tmp_path / 'file').write_text('mine')
     (tmp_path / 'log.csv').write_text('')
-    table = ('wire_out_fm,winch_stbd_fm,winch_port_fm', '1,1,1', '2,2,2', '3,3,3')
-    (tmp_path / 'table.csv').write_text('\n'.join(table))
     before = sorted(tmp_path.rglob('*'))
     out = place.format(folder=tmp_path)
-    words = words.format(log=tmp_path / 'log.csv', table=tmp_path / 'table.csv').split()
+    words = words.format(log=tmp_path / 'log.csv').split()
     began = time.monotonic()
     done = CliRunner().invoke(trawl, [*words, '--out', out])
     assert time.monotonic() - began < 20.0

@@ -12,8 +12,8 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.studies.identification.plant import Look
-from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows
+from trawl_ros.lab.trials.linearised_plant import LinearisedState
+from trawl_ros.lab.trials.readings import AS_STATED, steady_windows
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import find_equilibrium
@@ -35,7 +35,7 @@ class Hidden:
 
 
 @cache
-def looks(gear: GearRecord, hidden: Hidden) -> tuple[Look, ...]:
+def looks(gear: GearRecord, hidden: Hidden) -> tuple[LinearisedState, ...]:
     """The states of one tow of a board that differs from the start values."""
     prior = board_prior(gear)
     board = prior.start + 0.3 * prior.std * np.cos(np.arange(12))
@@ -46,7 +46,7 @@ def looks(gear: GearRecord, hidden: Hidden) -> tuple[Look, ...]:
         jacobian = sensitivities(there, near)
         seen = dict(zip(OBSERVABLES, near.observables.array(), strict=True))
         values = np.array([hidden.shown(seen)[name] for name in OBSERVABLES])
-        found.append(Look((length, speed), values, jacobian[:, 12:], jacobian[:, :12]))
+        found.append(LinearisedState((length, speed), values, jacobian[:, 12:], jacobian[:, :12]))
     return tuple(found)
 
 
@@ -55,8 +55,8 @@ def trial(
 ) -> list[SteadyWindow]:
     """Steady windows of tows with errors of instruments as stated."""
     seen = looks(gear, hidden)
-    chance = np.random.default_rng(seed)
-    windows = steady_windows([seen] * tows, AS_STATED, chance, first_tow=first)
+    rng = np.random.default_rng(seed)
+    windows = steady_windows([seen] * tows, AS_STATED, rng, first_tow=first)
     return [
         replace(window, hours=HOURS * (number % len(STATES)))
         for number, window in enumerate(windows)

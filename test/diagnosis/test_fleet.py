@@ -14,8 +14,8 @@ from trawl_ros.effects.registry import catalogue
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.parts import own_parts
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.studies.identification.plant import Look
-from trawl_ros.lab.studies.identification.readings import AS_STATED, steady_windows
+from trawl_ros.lab.trials.linearised_plant import LinearisedState
+from trawl_ros.lab.trials.readings import AS_STATED, steady_windows
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
@@ -48,7 +48,7 @@ DRAG = 1.4
 TOWS, HOURS = 3, 0.5
 
 
-def looks(gear: GearRecord, name: str, hidden: bool) -> list[Look]:
+def looks(gear: GearRecord, name: str, hidden: bool) -> list[LinearisedState]:
     """Steady states of a tow, with or without the hidden change."""
     model, near, found = build_model(gear), None, []
     for length, speed in STATES[name]:
@@ -62,7 +62,9 @@ def looks(gear: GearRecord, name: str, hidden: bool) -> list[Look]:
         near = find_equilibrium(there, OperatingPoint(length, length, speed), near)
         jacobian = sensitivities(there, near)
         found.append(
-            Look((length, speed), near.observables.array(), jacobian[:, 12:], jacobian[:, :12])
+            LinearisedState(
+                (length, speed), near.observables.array(), jacobian[:, 12:], jacobian[:, :12]
+            )
         )
     return found
 

@@ -6,10 +6,10 @@ import itertools
 import numpy as np
 import pytest
 
+from endurance.hostile_messages.mutations import hostile_bytes
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.limits import IMAGE_BYTES, MESSAGE_BYTES
 from trawl_ros.core.time import SECOND
-from trawl_ros.lab.studies.hostile.mutations import hostile_bytes
 from trawl_ros.messages.cdr import STORE, serialize
 from trawl_ros.messages.commands import winch_command
 from trawl_ros.messages.stamps import header

@@ -6,8 +6,8 @@ import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
+from endurance.stranger import Stranger  # noqa: E402
 from trawl_ros.core.time import SECOND  # noqa: E402
-from trawl_ros.lab.running.stranger import Stranger  # noqa: E402
 from trawl_ros.messages.cdr import deserialize  # noqa: E402
 from trawl_ros.messages.stamps import from_time, stamp_of  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402

@@ -1,6 +1,7 @@
 """Every command and code block of README and docs does as it stands there."""
 
 import re
+import shlex
 
 import click
 from promised.documents import ROOT, TABLE
@@ -36,9 +37,13 @@ def test_the_options_of_every_command_exist(documents):
     for document in documents:
         commands = [promise.title for promise in document.promises]
         for words in map(str.split, (*document.mentioned, *commands)):
-            if words[0] == 'trawl':
+            if words[:2] == ['trawl', 'study']:
+                # Pages of earlier runs name their command: docs/studies/lessons.md has the commit.
+                assert document.name.startswith(('docs/studies/', 'docs/validation/')), words
+            elif words[0] == 'trawl':
                 parse(trawl, words)
             elif words[0] == 'make':
+                words = shlex.split(' '.join(words))
                 (target,) = (word for word in words[1:] if '=' not in word)
                 assert re.search(rf'^{target}:', (ROOT / 'Makefile').read_text(), re.M), words
 

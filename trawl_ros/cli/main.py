@@ -31,10 +31,6 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'gear': ('cli.gear', 'Check gear files, and make them from net plans.'),
         'validate': ('lab.commands.validate', "Check the model's claims and write the report."),
         'benchmark': ('lab.commands.benchmark', 'Measure how fast things are, beside other tools.'),
-        'study': (
-            'lab.commands.study',
-            'Run the whole chain for long, and report what that shows.',
-        ),
         'scenarios': ('cli.scenarios', 'List the scenarios that come with the package.'),
         'import-log': ('cli.import_log', 'Turn a log from sea, a table or NMEA 0183, into a bag.'),
         'bag': ('cli.bag', 'Look into bags, check, repair and export them.'),

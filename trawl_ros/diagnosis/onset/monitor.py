@@ -64,8 +64,8 @@ at least."""
 
 WHITE_LIMIT, MARGIN = 6.41, 1.4
 """Rarity that white innovations exceed once in 230 h, over all candidates and onsets, by
-``trawl study onset --limit 200 --seed 7100``; and the factor on it for what is not quite white, by
-hand. docs/studies/onset.md has how rare innovations of clean tows are."""
+``make study NAME=onset ARGS='--limit 200 --seed 7100'``; and the factor on it for what is not
+quite white, by hand. docs/studies/onset.md has how rare innovations of clean tows are."""
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ GROUP_OF = np.array([GROUPS.index(group_of(name)) for name in MEASURED])
 MODEL_FRACTION = 0.003
 MODEL_ANGLE = np.radians(0.2)
 """Std of what the model itself is wrong by, a part of the value, and for pitch and roll an angle
-(rad). Assumed; ``trawl study identification`` measures what a gear of twice as fine warps and
+(rad). Assumed; ``make study NAME=coverage`` measures what a gear of twice as fine warps and
 bridles and a net without joined meshes shows more than the default."""
 
 USUAL_LENGTH, LONGER = 500.0, 1.5

@@ -1,1 +1,1 @@
-"""The commands of the lab: `trawl validate`, `trawl benchmark`, `trawl study`."""
+"""The commands of the lab: `trawl validate`, `trawl benchmark`."""

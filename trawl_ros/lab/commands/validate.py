@@ -32,6 +32,8 @@ def command(cases: tuple[str, ...], out: Path, force: bool, small: bool, workers
         held, total = sum(row.ok for row in case.rows), len(case.rows)
         console.print(f'{case.name}: {held} of {total} checks hold, {case.seconds:.0f} s')
         print_missed(case.rows, console)
+        if not total:
+            console.print(case.text, markup=False)
 
     with ProgressDisplay(console) as display:
         finished = validate(

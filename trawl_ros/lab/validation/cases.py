@@ -31,6 +31,7 @@ SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         'branches': ('steady_states', 'fastening_points'),
         'panels': ('netting',),
         'sea': ('hauls',),
+        'tank': ('flume',),
     }
 )
 """Sub-package of `trawl_ros.lab.validation` → its modules, each with a ``CASE`` of that name."""
@@ -44,6 +45,7 @@ TITLES: Mapping[str, str] = MappingProxyType(
         'branches': 'Branches',
         'panels': 'Netting panels',
         'sea': 'Hauls at sea',
+        'tank': 'A flume tank',
     }
 )
 

@@ -18,7 +18,7 @@ from trawl_ros.report.pictures import draw
 
 PROCESS = multiprocessing.get_context('spawn')
 
-LONG = ('steady_states', 'sentences', 'board_frame', 'hauls')
+LONG = ('steady_states', 'sentences', 'board_frame', 'hauls', 'flume')
 """Cases that take minutes, and are started first so that none is left over at the end."""
 
 COMMAND = 'trawl validate'

@@ -1,0 +1,1 @@
+"""Long tests of nodes and model: soak, faults in the graph, hostile messages, random commands."""

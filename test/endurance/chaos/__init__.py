@@ -1,0 +1,1 @@
+"""Faults in the ROS graph: nodes stopped, killed or disturbed, full disks, wrong clocks."""

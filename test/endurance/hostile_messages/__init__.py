@@ -1,0 +1,1 @@
+"""Hostile messages to every subscription of every node."""

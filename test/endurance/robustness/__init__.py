@@ -1,0 +1,1 @@
+"""Changed gears, and hours of random commands."""

@@ -1,0 +1,1 @@
+"""The chain of nodes for a day at sea."""

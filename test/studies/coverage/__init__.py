@@ -1,0 +1,1 @@
+"""Intervals and predictions of identification, from trials whose plant is not the model."""

@@ -1,0 +1,1 @@
+"""Blind trials of the diagnosis: planned, diagnosed, scored."""

@@ -1,0 +1,1 @@
+"""Simulated range sensors compared with those of a survey."""

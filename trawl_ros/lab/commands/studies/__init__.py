@@ -1,1 +1,0 @@
-"""The commands of `trawl study`, one file each."""

@@ -1,1 +1,0 @@
-"""Long runs of the whole chain, and what they show."""

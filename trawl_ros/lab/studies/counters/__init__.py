@@ -1,1 +1,0 @@
-"""The study of counters that err as measured ones did."""

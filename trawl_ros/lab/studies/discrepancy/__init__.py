@@ -1,1 +1,0 @@
-"""Blind trials of the diagnosis."""

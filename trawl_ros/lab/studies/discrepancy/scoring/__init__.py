@@ -1,1 +1,0 @@
-"""Scores of the verdicts on blind trials, and their report."""

@@ -1,1 +1,0 @@
-"""Blind trials: planned, made from a plant, and recorded."""

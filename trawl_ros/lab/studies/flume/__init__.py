@@ -1,1 +1,0 @@
-"""The study of a net that is held in a flume tank."""

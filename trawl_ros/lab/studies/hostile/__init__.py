@@ -1,1 +1,0 @@
-"""The study of hostile messages to every subscription of every node."""

@@ -1,1 +1,0 @@
-"""Trials of the estimator on plants that are not its model."""

@@ -1,1 +1,0 @@
-"""The study of instruments beside measured ones."""

@@ -1,1 +1,0 @@
-"""Robustness of the model: changed gears, and hours of random commands."""

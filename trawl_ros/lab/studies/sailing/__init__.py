@@ -1,1 +1,0 @@
-"""Study of the trial that runs itself, beside a planned trial and the paper's sweep."""

@@ -1,1 +1,0 @@
-"""The soak: the chain for a day at sea."""

@@ -1,1 +1,0 @@
-"""Readings of the trawl sonar's image against truth."""

@@ -1,0 +1,297 @@
+"""Construction of trials: visible data, and the key."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.diagnosis.holdout import split
+from trawl_ros.effects.base.effect import Situation
+from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.windows.over_ground import GroundTrack
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.lab.trials.hidden_effects.hidden import Hidden
+from trawl_ros.lab.trials.hidden_effects.inside import INSIDE
+from trawl_ros.lab.trials.hidden_effects.other_keys import CAUSES
+from trawl_ros.lab.trials.hidden_effects.outside import OUTSIDE
+from trawl_ros.lab.trials.linearised_plant import LinearisedState, MeshResolution
+from trawl_ros.lab.trials.plant import Plant, draw_plant
+from trawl_ros.lab.trials.readings import (
+    AS_STATED,
+    Sensors,
+    steady_windows,
+    wrong_by,
+)
+from trawl_ros.lab.trials.recording import record_tows
+from trawl_ros.lab.trials.strength import Likelihood, likelihood
+from trawl_ros.lab.trials.towing import Course, quasi_steady, towed_in_time
+from trawl_ros.lab.trials.tows import PLANS, BlindTrialPlan, PlannedTow
+from trawl_ros.lab.trials.trial import Key, Spec
+from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
+from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.stepper import StepFailed
+from trawl_ros.solver.trimming.drawn_board import fastened_as
+
+WRONG_BY = 0.3
+"""Noise and biases of each kind of sensor are larger or smaller than stated by this part."""
+
+DROPOUTS = 0.02
+"""Part of the means that are missing of windows in which a channel fell silent."""
+
+LENGTH_JITTER, SPEED_JITTER, HOURS_JITTER = 4.0, 0.02, 0.05
+"""Std of how far (m, m/s, h) states are from the plan."""
+
+
+@dataclass(frozen=True)
+class SeededTrial:
+    """Plant with effects hidden in it, and the key."""
+
+    key: Key
+    plant: Plant
+    effects: tuple[tuple[Hidden, float], ...]
+    sensors: Sensors
+
+    def towed(self, plan: BlindTrialPlan) -> tuple[tuple[LinearisedState, ...], ...] | None:
+        """Tows of the plant, or None if it cannot be towed."""
+        try:
+            return self.plant.towed(self.effects, plan)
+        except NoSteadyState:
+            return None
+
+
+@dataclass(frozen=True)
+class TrialData:
+    """Windows of a trial, and the same from instruments without errors."""
+
+    windows: tuple[SteadyWindow, ...]
+    quiet: tuple[SteadyWindow, ...]
+
+
+def hide(spec: Spec, gear: str, cut: MeshResolution, seed: int) -> SeededTrial:
+    """Hide the wanted effects, if that is possible."""
+    shape = chance_of(spec, seed)
+    plant = _plant(gear, cut, seed, spec.plant)
+    likely = likelihood_of(gear, cut, seed, spec.plant, spec.plan)
+    drawn = tuple({**INSIDE, **OUTSIDE, **CAUSES}[name](shape) for name in spec.effects)
+    # Two at once are each as strong as if it were alone.
+    outside = spec.series == 'outside'
+    detectable = tuple(
+        likely.detectable(hidden, sign, beside_catalogue=outside)
+        for hidden, sign in zip(drawn, spec.signs, strict=True)
+    )
+    sizes = tuple(
+        sign * spec.strength * size for sign, size in zip(spec.signs, detectable, strict=True)
+    )
+    units = tuple(hidden.unit for hidden in drawn)
+    why_not = ''
+    for hidden, size in zip(drawn, sizes, strict=True):
+        if not abs(size) <= hidden.most[0 if size < 0.0 else 1]:
+            why_not = f'{hidden.name} of {size:.3g} {hidden.unit} is not possible'
+    sizes = tuple(
+        float(np.sign(size)) if hidden.whole else size
+        for hidden, size in zip(drawn, sizes, strict=True)
+    )
+    coefficients = tuple(map(float, plant.coefficients))
+    key = Key(spec, sizes, units, detectable, not why_not, why_not, coefficients, {})
+    # The instruments of a trial stay the same when she is out again.
+    sensors = wrong_by(WRONG_BY, chance_of(spec, seed, 'sensors'))
+    return SeededTrial(key, plant, tuple(zip(drawn, sizes, strict=True)), sensors)
+
+
+def chance_of(spec: Spec, seed: int, what: str = '') -> np.random.Generator:
+    """Random generator of a trial."""
+    return np.random.default_rng([seed, spec.origin, *spec.series.encode(), *what.encode()])
+
+
+def make(spec: Spec, gear: str, cut: MeshResolution, seed: int) -> tuple[Key, TrialData | None]:
+    """Make a trial of windows, or say in its key why it cannot be made."""
+    hiding, plan = hide(spec, gear, cut, seed), PLANS[spec.plan]
+    if not hiding.key.testable:
+        return hiding.key, None
+    tows = hiding.towed(plan)
+    if tows is None:
+        return replace(hiding.key, testable=False, why_not='cannot be towed'), None
+    windows, looks = windows_of(tows, chance_of(spec, seed, 'noise'), plan, hiding.sensors)
+    quiet = tuple(_quiet(window, look) for window, look in zip(windows, looks, strict=True))
+    floor = floor_of(windows, looks, plan.baseline)
+    return replace(hiding.key, floor=floor), TrialData(windows, quiet)
+
+
+def _quiet(window: SteadyWindow, look: LinearisedState) -> SteadyWindow:
+    inputs = dict(zip(INPUTS, look.inputs, strict=True))
+    means = {name: inputs.get(name) or look[name] for name in window.means}
+    return replace(window, means=means)
+
+
+def floor_of(
+    windows: Sequence[SteadyWindow], looks: Sequence[LinearisedState], baseline: int
+) -> dict[str, float]:
+    """Errors that the plant itself would have on the windows that are kept back, by channel."""
+    kept_back = {window.index for window in split(windows, frozenset(range(baseline))).kept_back}
+    errors: dict[str, list[float]] = {}
+    for window, look in zip(windows, looks, strict=True):
+        if window.index not in kept_back:
+            continue
+        inputs = np.array([window.means[name] for name in INPUTS])
+        predicted = look.values + look.by_inputs @ (inputs - np.array(look.inputs))
+        for name in MEASURED:
+            if name in window.means:
+                error = window.means[name] - float(predicted[OBSERVABLES.index(name)])
+                errors.setdefault(name, []).append(error)
+    return {name: float(np.sqrt(np.mean(np.square(own)))) for name, own in errors.items()}
+
+
+def windows_of(
+    tows: Sequence[Sequence[LinearisedState]],
+    rng: np.random.Generator,
+    plan: BlindTrialPlan,
+    sensors: Sensors,
+    *,
+    first: int = 0,
+    first_tow: int = 0,
+) -> tuple[tuple[SteadyWindow, ...], tuple[LinearisedState, ...]]:
+    """Windows as instruments give them, of states that are not quite as planned, and the states.
+
+    Parameters
+    ----------
+    tows
+        Observables of the plant.
+    rng
+        Generator of random numbers.
+    plan
+        Tows of the trial.
+    sensors
+        True errors of the instruments.
+    first, first_tow
+        Numbers of the first window and the first tow.
+    """
+    jittered = [[_jittered(look, rng) for look in tow] for tow in tows]
+    windows = steady_windows(jittered, sensors, rng, first_tow)
+    states = [(tow, place) for tow in plan.tows for place in range(len(tow.states))]
+    seen = tuple(
+        _as_seen(window, number, tow.moment(place), rng)
+        for number, (window, (tow, place)) in enumerate(zip(windows, states, strict=True), first)
+    )
+    return seen, tuple(look for tow in jittered for look in tow)
+
+
+def _jittered(look: LinearisedState, rng: np.random.Generator) -> LinearisedState:
+    length = LENGTH_JITTER * rng.standard_normal()
+    speed = SPEED_JITTER * rng.standard_normal()
+    state = (look.state[0] + length, look.state[1] + speed)
+    values = look.values + look.by_inputs @ np.array([length, length, speed])
+    return replace(look, state=state, values=values)
+
+
+def _as_seen(
+    window: SteadyWindow, number: int, at: Situation, rng: np.random.Generator
+) -> SteadyWindow:
+    # Windows without a channel that is required are none.
+    lost = {
+        name for name in window.means if not CHANNELS[name].required and rng.uniform() < DROPOUTS
+    }
+
+    def kept(values: Mapping[str, float]) -> dict[str, float]:
+        return {name: own for name, own in values.items() if name not in lost}
+
+    return replace(
+        window,
+        index=number,
+        state=number,
+        hours=at.hours + HOURS_JITTER * rng.uniform(-1.0, 1.0),
+        track=GroundTrack(0.0 if at.sense > 0.0 else np.pi, 0.0, 0.0, False),
+        means=kept(window.means),
+        noise=kept(window.noise),
+        bias=kept(window.bias),
+        counts={name: own for name, own in window.counts.items() if name not in lost},
+    )
+
+
+@cache
+def _plant(gear: str, cut: MeshResolution, seed: int, number: int) -> Plant:
+    return draw_plant(gear, cut, seed, number)
+
+
+def gear_aboard(gear: str, cut: MeshResolution, seed: int, number: int) -> GearRecord:
+    """Gear of a plant as it is known aboard: boards fastened as they are, and no more."""
+    return fastened_as(cut.model(gear), _plant(gear, cut, seed, number).model.gear)
+
+
+@cache
+def likelihood_of(gear: str, cut: MeshResolution, seed: int, number: int, plan: str) -> Likelihood:
+    """Likelihood of a plant in the windows of a plan."""
+    plant, tows = _plant(gear, cut, seed, number), PLANS[plan]
+    quiet = steady_windows(plant.towed((), tows), AS_STATED, np.random.default_rng(0))
+    quiet = tuple(replace(window, index=place, state=place) for place, window in enumerate(quiet))
+    return likelihood(plant, board_prior(cut.model(gear)), quiet, tows)
+
+
+FOLLOWED = 'followed'
+
+
+def proposed(diagnosis: Mapping[str, Any]) -> PlannedTow | None:
+    """Next tow by a diagnosis; None where it proposes none."""
+    for step in diagnosis['next_tow']:
+        if step['states']:
+            states = tuple((state['warp_length'], state['speed']) for state in step['states'])
+            return PlannedTow(states, eastward=not step['reciprocal'])
+    return None
+
+
+def tow_on(
+    spec: Spec,
+    gear: str,
+    cut: MeshResolution,
+    seed: int,
+    windows: Sequence[SteadyWindow],
+    tow: PlannedTow,
+) -> tuple[Key, tuple[SteadyWindow, ...] | None]:
+    """Add a tow to the windows of a trial, or say in the key why it cannot be towed."""
+    hiding = hide(spec, gear, cut, seed)
+    key = replace(hiding.key, spec=replace(spec, series=FOLLOWED))
+    plan = BlindTrialPlan((tow,), baseline=0)
+    towed = hiding.towed(plan)
+    if towed is None:
+        return replace(key, testable=False, why_not='cannot be towed'), None
+    more, _ = windows_of(
+        towed,
+        chance_of(spec, seed, FOLLOWED),
+        plan,
+        hiding.sensors,
+        first=len(windows),
+        first_tow=1 + max(window.tow for window in windows),
+    )
+    return key, (*windows, *more)
+
+
+def make_bags(spec: Spec, gear: str, cut: MeshResolution, seed: int, folder: Path) -> Key:
+    """Make a trial as bags in a folder, unless what is hidden is not possible."""
+    hiding = hide(spec, gear, cut, seed)
+    if not hiding.key.testable:
+        return hiding.key
+    try:
+        courses = _in_time(hiding) if spec.form == 'dynamic' else _steady(hiding)
+    except (NoSteadyState, StepFailed) as reason:
+        return replace(hiding.key, testable=False, why_not=f'cannot be towed: {reason}')
+    rng = chance_of(spec, seed, spec.form)
+    record_tows(folder, courses, hiding.plant.model.water, hiding.sensors, DROPOUTS, rng)
+    return hiding.key
+
+
+def _steady(hiding: SeededTrial) -> list[Course]:
+    plan = PLANS[hiding.key.spec.plan]
+    tows = hiding.plant.towed(hiding.effects, plan)
+    return [quasi_steady(tow, looks) for tow, looks in zip(plan.tows, tows, strict=True)]
+
+
+def _in_time(hiding: SeededTrial) -> list[Course]:
+    plan = PLANS[hiding.key.spec.plan]
+    return [
+        towed_in_time(hiding.plant.model, tow, () if number < plan.baseline else hiding.effects)
+        for number, tow in enumerate(plan.tows)
+    ]

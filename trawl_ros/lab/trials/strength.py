@@ -1,0 +1,187 @@
+"""Detectable size of a hidden effect, from the plant's own likelihood.
+
+The plant, linearised around its board, says how what the effect changes compares with the errors of
+the instruments and with what coefficients could mimic. No detector has part in it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.stats import norm
+
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.diagnosis.candidates import Candidate, candidates, signatures, values_vector
+from trawl_ros.diagnosis.evidence import POWER, Evidence, evidence
+from trawl_ros.diagnosis.holdout import split
+from trawl_ros.diagnosis.refit import OPTIONS
+from trawl_ros.effects.registry import catalogue
+from trawl_ros.estimation.fit.fit import AS_STATED, Fit
+from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.lab.trials.hidden_effects.hidden import Hidden
+from trawl_ros.lab.trials.linearised_plant import LinearisedState
+from trawl_ros.lab.trials.plant import Plant
+from trawl_ros.lab.trials.readings import SENSED
+from trawl_ros.lab.trials.tows import FULL, BlindTrialPlan
+from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.predict import Predictor
+
+ALARM = 0.01 / 30.0
+"""Probability at which one of some thirty looks is an alarm, so that all of them are one in 1 %."""
+
+SIGMAS = float(norm.isf(0.5 * ALARM)) + POWER
+"""An effect this many standard deviations strong is seen in 80 % of trials."""
+
+MAX_PROBES = 10
+"""Of probing with a size near the one that is wanted, at most."""
+
+CLOSE = 0.05
+"""Part of a size by which it may be off."""
+
+
+@dataclass(frozen=True)
+class Likelihood:
+    """Likelihood of the plant, linearised around its board in the deciding windows."""
+
+    plant: Plant
+    fit: Fit
+    plan: BlindTrialPlan
+
+    def detectable(self, hidden: Hidden, sign: float, *, beside_catalogue: bool) -> float:
+        """Smallest size that is detected in 80 % of trials, infinite if no possible one is.
+
+        Parameters
+        ----------
+        hidden, sign
+            The effect, and to which side.
+        beside_catalogue
+            True if what the best effect of the catalogue could mimic does not count.
+
+        Returns
+        -------
+        float
+            In units of the effect; of what is there as a whole or not at all, the part of its
+            strength that would do.
+        """
+        most = hidden.most[0] if sign < 0.0 else hidden.most[1]
+        size, low, high, enough = min(hidden.probe, most), 0.0, np.inf, np.inf
+        for _ in range(MAX_PROBES):
+            try:
+                seen = self._sigmas(hidden, sign * size, beside_catalogue)
+            except NoSteadyState:
+                high, size = size, 0.5 * (low + size)
+                continue
+            if seen <= 0.0:
+                return np.inf
+            wanted = size * SIGMAS / seen
+            close = abs(wanted / size - 1.0) < CLOSE
+            if close or hidden.whole or (wanted > most and np.isinf(high)):
+                return float(wanted)
+            if wanted > size:
+                low = size
+            else:
+                high = enough = size
+            # A gear that leans far to one side does so at some size, and hardly before.
+            size = wanted if low < wanted < high else 0.5 * (low + high)
+        # Beyond what is too small to be seen the gear cannot be towed, or it is that strong.
+        return float(enough)
+
+    def _sigmas(self, hidden: Hidden, size: float, beside_catalogue: bool) -> float:
+        """Strength of an effect in standard deviations."""
+        changed = self.plant.towed([(hidden, size)], self.plan)
+        rows = [OBSERVABLES.index(name) for name in SENSED]
+        columns = [
+            (there.values - clean.values)[rows][:, None]
+            for there, clean in zip(_flat(changed), self._clean, strict=True)
+        ]
+        chosen = {part.window.index for part in self.fit.windows}
+        columns = [own for number, own in enumerate(columns) if number in chosen]
+        if not beside_catalogue:
+            return float(np.sqrt(evidence(self.fit, columns, np.ones(1)).information[0, 0]))
+        mimics = self._mimics
+        number = mimics[0].shape[1]
+        both = [np.hstack((own, other)) for own, other in zip(columns, mimics, strict=True)]
+        found = evidence(self.fit, both, np.ones(number + 1))
+        left = [found.information[0, 0]]
+        for block in values_vector(self.wanted).blocks('effect'):
+            cosine = found.covered([0], np.ones(1), [place + 1 for place in block])
+            left.append(found.information[0, 0] * (1.0 - cosine**2))
+        return float(np.sqrt(max(0.0, min(left))))
+
+    @cached_property
+    def _clean(self) -> list[LinearisedState]:
+        return _flat(self.plant.towed((), self.plan))
+
+    @cached_property
+    def wanted(self) -> tuple[Candidate, ...]:
+        """All effects of the catalogue."""
+        predictor = Predictor(self.plant.model, without=frozenset(range(self.plan.baseline)))
+        depths = np.array([part.window.means['net_depth'] for part in self.fit.windows])
+        return candidates(catalogue(), predictor, depths)
+
+    @property
+    def mimicry(self) -> Evidence:
+        """Evidence of the plan on all effects of the catalogue."""
+        units = np.concatenate([candidate.scale for candidate in self.wanted])
+        return evidence(self.fit, self._mimics, units)
+
+    @cached_property
+    def _mimics(self) -> list[FloatArray]:
+        predictor = Predictor(self.plant.model, without=frozenset(range(self.plan.baseline)))
+        return signatures(predictor, self.fit.windows, self.wanted)
+
+
+def likelihood(
+    plant: Plant,
+    prior: ParameterVector,
+    windows: Sequence[SteadyWindow],
+    plan: BlindTrialPlan = FULL,
+) -> Likelihood:
+    """Linearise a plant.
+
+    Parameters
+    ----------
+    plant
+        The plant.
+    prior
+        Prior of the boards.
+    windows
+        All windows of the plan, with nothing hidden and without noise, their indices in the order
+        of the plan; those that decide are used.
+    plan
+        Tows of the trial.
+    """
+    deciding = {window.index for window in split(windows, frozenset(range(plan.baseline))).deciding}
+    rows = [OBSERVABLES.index(name) for name in SENSED]
+    parts = []
+    states = [state for tow in plan.tows for state in tow.states]
+    for window, state in zip(windows, states, strict=True):
+        if window.index not in deciding:
+            continue
+        clean = plant.clean[state]
+        parts.append(
+            Linearised(
+                window=window,
+                channels=SENSED,
+                at=plant.coefficients,
+                inputs=np.array(clean.look.inputs),
+                net=np.ones(2),
+                measured=clean.look.values[rows],
+                values=clean.look.values[rows],
+                by_coefficients=clean.look.by_coefficients[rows],
+                by_inputs=clean.look.by_inputs[rows],
+                by_net=np.zeros((len(rows), 2)),
+                slow=clean.slow[rows],
+                state=clean.state,
+            )
+        )
+    fit = Fit(tuple(parts), plant.coefficients, AS_STATED, prior, OPTIONS)
+    return Likelihood(plant, fit, plan)
+
+
+def _flat(tows: Sequence[Sequence[LinearisedState]]) -> list[LinearisedState]:
+    return [look for tow in tows for look in tow]

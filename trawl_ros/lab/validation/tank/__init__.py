@@ -1,0 +1,1 @@
+"""Comparison with a net that was measured in a flume tank."""
