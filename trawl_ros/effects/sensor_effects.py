@@ -1,7 +1,7 @@
 """Sensor effects on samples: readings with the errors of a gear file's effects.
 
-Truth stays unchanged: counters and log show the numbers at which the effects return the true
-inputs, and sensors show the observables with the effects applied.
+The truth does not change. Counters and log show the inputs for which the effects return the true
+inputs; sensors show the observables with the effects applied.
 """
 
 from dataclasses import replace
@@ -22,8 +22,8 @@ from trawl_ros.records.samples import (
     WinchSample,
 )
 
-ROUNDS = 20
-"""Of fixed points; each round leaves a fifth of what is missing, or less."""
+FIXED_POINT_ITERATIONS = 20
+"""Iterations for the indicated inputs; each leaves a fifth of the error or less."""
 
 HOUR_NS = 3600 * 1_000_000_000
 DEPTHS = {
@@ -33,8 +33,8 @@ DEPTHS = {
 }
 RANGES = {'spread': 'door_spread', 'opening_height': 'vertical_opening'}
 OTHER = {'port': 'starboard', 'starboard': 'port'}
-USUAL = np.array([500.0, 500.0, 2.0])
-"""Warp lengths (m) and speed (m/s) where an instrument does not know the others'."""
+USUAL_INPUTS = (500.0, 500.0, 2.0)
+"""Warp lengths (m) and speed (m/s) in place of those that an instrument does not measure."""
 
 
 def _other_side(name: str) -> str:
@@ -48,9 +48,9 @@ class SensorEffects:
     Parameters
     ----------
     effect_set
-        The effects; without any, samples pass unchanged.
+        Effects of the gear; if there are none, samples pass unchanged.
     water
-        Turns pressure into depth and back.
+        Density profile that converts pressure into depth and back.
     """
 
     def __init__(self, effect_set: EffectSet, water: Water) -> None:
@@ -65,10 +65,10 @@ class SensorEffects:
             return sample
         if self._first is None or sample.stamp < self._first:
             self._first = sample.stamp
-        at = Situation((500.0, 500.0, 2.0), hours=(sample.stamp - self._first) / HOUR_NS)
+        at = Situation(USUAL_INPUTS, hours=(sample.stamp - self._first) / HOUR_NS)
         match sample:
             case WinchSample():
-                lengths = self._instrument(np.array([*sample.lengths, USUAL[2]]), at)[:2]
+                lengths = self._instrument(np.array([*sample.lengths, USUAL_INPUTS[2]]), at)[:2]
                 tensions = {
                     'port_tension': sample.tensions[0],
                     'starboard_tension': sample.tensions[1],
@@ -80,7 +80,7 @@ class SensorEffects:
                     tensions=(seen['port_tension'], seen['starboard_tension']),
                 )
             case VelocitySample(over='water'):
-                ahead = self._instrument(np.array([*USUAL[:2], sample.velocity[0]]), at)[2]
+                ahead = self._instrument(np.array([*USUAL_INPUTS[:2], sample.velocity[0]]), at)[2]
                 velocity = np.array([ahead, *sample.velocity[1:]])
                 return replace(sample, velocity=velocity)
             case PressureSample() if sample.place in DEPTHS:
@@ -100,8 +100,10 @@ class SensorEffects:
                 return sample
 
     def _sensors(self, known: Readings, at: Situation) -> Readings:
-        """Readings of sensors; each depends on its own observable, and on that of the other side as
-        it was last, or is the same there before that is known.
+        """Return the readings of sensors.
+
+        Each depends on its own observable and on the last one of the other side; before that is
+        known, both sides are taken to be the same.
         """
         self._last.update(known)
         both = {_other_side(name): value for name, value in known.items()}
@@ -109,8 +111,8 @@ class SensorEffects:
         return self._effect_set.apply_to_sensors(true, at)
 
     def _instrument(self, true: FloatArray, at: Situation) -> FloatArray:
-        """Indicated inputs at which the gear is towed with ``true``, by fixed-point iteration."""
+        """Return the indicated inputs whose true inputs are ``true``, by fixed-point iteration."""
         shown = true
-        for _ in range(ROUNDS):
+        for _ in range(FIXED_POINT_ITERATIONS):
             shown = shown + true - self._effect_set.apply_to_inputs(shown, at)
         return shown
