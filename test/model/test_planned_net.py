@@ -407,7 +407,7 @@ def test_a_rigging_that_cannot_be_is_refused(
 def test_a_rope_that_is_too_short_for_its_bosom_is_refused(tmp_path: Path) -> None:
     data = plan_data()
     data['headrope']['length_m'] = 15.0
-    with pytest.raises(GearError, match=r'headrope\.length_m: found 15, expected more than the'):
+    with pytest.raises(GearError, match=r'headrope\.length_m: found 15'):
         build_model(loaded(tmp_path, data))
 
 
@@ -513,7 +513,7 @@ def test_square_meshes_ahead_of_the_codend_are_a_part_of_its_line(tmp_path: Path
 @pytest.mark.parametrize(
     ('section', 'message'),
     [
-        ('800 mm', 'found square in the upper body, expected T0 or T90: bars of square meshes'),
+        ('800 mm', 'found square in the upper body'),
         ('120 mm', None),
     ],
 )

@@ -93,7 +93,11 @@ class BoardForce(EmpiricalTerm):
     def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Return the gear model with the force on its boards."""
         sizes = values[0] * (at.hours * BOTH_BOARDS if self.by_hours else HALF_DIFFERENCE)
-        return model.with_board(bend=CoefficientIncrement(self.place, sizes, model.board.bend))
+        return model.with_board(
+            coefficient_modifier=CoefficientIncrement(
+                self.place, sizes, model.board.coefficient_modifier
+            )
+        )
 
 
 def board_terms() -> Iterator[EmpiricalTerm]:

@@ -1,26 +1,26 @@
-"""One pass over the nodes of a gear: knots, floats and weights (eq. 22, 28), lift of the sheets of
-netting at nodes, and their slopes.
+"""One pass over the nodes of a gear: lumps, sheets of netting, and their derivatives.
 
-The lift that a sheet has by its solidity is added to the loads of its bars. With the area a of the
-sheet that belongs to a node (a vector across it), its twine A, the flow u and the coefficient κ,
+Lumps are knots, floats and weights (eq. 22, 28). The lift of a sheet by its solidity is added to
+the loads of its bars. With the area a of the sheet of a node (a vector normal to it), its twine A,
+the flow u and the coefficient κ,
 
     F = ½ ρ κ A² / (|a|² + A²) (u · a / |a|) (|u| a - (a · u) u / |u|)
 
 is a load across the flow of ½ ρ κ S² / (1 + S²) |a| |u|² sin θ cos θ, with the solidity
-S = A / |a|. The area is d₁ × d₂; both sides are weighted sums of the places of the node and of
-those tied to it, so that its slopes lie on the bars' pattern.
+S = A / |a|. The area is d₁ × d₂. Both sides d are weighted sums of the positions of the node and of
+its neighbours, so that its derivatives lie on the pattern of the bars.
 """
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.model.bar import STILL
+from trawl_ros.model.bar import SPEED_ROUNDING_M_S
 from trawl_ros.model.bar_pass import WaterTable
 from trawl_ros.model.compiled import compiled, inner
 from trawl_ros.model.current import current_at
 
-CLOSED = 1e-4
-"""Area (m²) below which a sheet counts as closed, so that its direction has a derivative."""
+AREA_ROUNDING_M2 = 1e-4
+"""Area below which that of a sheet is rounded off, so that its direction has a derivative."""
 
 
 @compiled
@@ -40,7 +40,7 @@ def fill_lump_forces(
     for n in range(len(force)):
         here = density - gradient * x[n, 2]
         current_at(knots, cubics, x[n, 2], flow, shear)
-        square = STILL**2 + 0 * here
+        square = SPEED_ROUNDING_M_S**2 + 0 * here
         for i in range(3):
             flow[i] -= v[n, i]
             square += flow[i] ** 2
@@ -69,14 +69,14 @@ def fill_lump_slopes(
     for n in range(len(stiffness)):
         here = density - gradient * x[n, 2]
         current_at(knots, cubics, x[n, 2], flow, shear)
-        square = STILL**2
+        square = SPEED_ROUNDING_M_S**2
         for i in range(3):
             flow[i] -= v[n, i]
             square += flow[i] ** 2
         speed = np.sqrt(square)
         viscous = viscous_area[n] * np.sqrt(speed)
         factor = 0.5 * here * (drag_area[n] * speed + viscous)
-        # Slope of this factor by the flow, over the flow.
+        # Derivative of this factor by the flow, over the flow.
         growth = 0.5 * here * (drag_area[n] * speed + 0.5 * viscous) / square
         for i in range(3):
             by_height = -gradient / here * factor * flow[i]
@@ -121,7 +121,7 @@ def add_sheet_forces(
     water: WaterTable,
     total: FloatArray,
 ) -> None:
-    """Add the lift of sheets to the nodes ``around[:, 0]`` that they belong to."""
+    """Add the lift of sheets to their own nodes ``around[:, 0]``."""
     density, gradient, _, knots, cubics = water
     flow, shear = np.empty(3, x.dtype), np.empty(3)
     long, wide, area = np.empty(3, x.dtype), np.empty(3, x.dtype), np.empty(3, x.dtype)
@@ -130,7 +130,7 @@ def add_sheet_forces(
         area_at(x, around, weights, n, long, wide, area)
         current_at(knots, cubics, x[node, 2], flow, shear)
         through = 0 * x[node, 2]
-        square, size = STILL**2 + through, CLOSED**2 + through
+        square, size = SPEED_ROUNDING_M_S**2 + through, AREA_ROUNDING_M2**2 + through
         for i in range(3):
             flow[i] -= v[node, i]
             through += flow[i] * area[i]
@@ -157,8 +157,10 @@ def add_sheet_slopes(
     stiffness_data: FloatArray,
     damping_data: FloatArray,
 ) -> None:
-    """The same, with K = -∂F/∂x and C = -∂F/∂v of the sheets; ``slots`` (n, m, 3, 3) are those of
-    the blocks of their own node's force by the places of all nodes around it.
+    """Add lift as `add_sheet_forces` does, with K = -∂F/∂x and C = -∂F/∂v of the sheets.
+
+    ``slots`` (n, m, 3, 3) are those of the blocks of the own node's force by the positions of all
+    nodes around it.
     """
     density, gradient, _, knots, cubics = water
     flow, shear, force = np.empty(3), np.empty(3), np.empty(3)
@@ -169,7 +171,7 @@ def add_sheet_slopes(
         area_at(x, around, weights, n, long, wide, area)
         here = density - gradient * x[node, 2]
         current_at(knots, cubics, x[node, 2], flow, shear)
-        through, square, size = 0.0, STILL**2, CLOSED**2
+        through, square, size = 0.0, SPEED_ROUNDING_M_S**2, AREA_ROUNDING_M2**2
         for i in range(3):
             flow[i] -= v[node, i]
             through += flow[i] * area[i]

@@ -1,9 +1,9 @@
-"""Sheets of netting in flowing water: how much of the load of single twines and knots is left.
+"""Sheets of netting in flowing water: reduction of the load of single twines and knots.
 
-Twines lie in each other's wakes, and water squeezes through between them. Along a sheet it has
-1 - a of its speed, through it 1 - b, which the twines speed up by 1 / (1 - S), with the solidity S.
-The sheet takes the momentum that the water loses. Water passes by its own motion through the sheet,
-which has the slope θ to the flow, and by turbulent exchange e:
+Twines lie in each other's wakes, and the water speeds up between them. Along a sheet the water has
+1 - a of its speed, through it 1 - b, which the twines increase by 1 / (1 - S), with the solidity S.
+The sheet takes the momentum that the water loses. Water passes through the sheet, which has the
+slope θ to the flow, by its mean motion and by turbulent exchange e:
 
     S C_t = 4 a cos θ ((1 - b) sin θ + e),   S C_n = 4 b sin θ ((1 - b) sin θ + e)
 
@@ -36,8 +36,10 @@ DENSEST = 0.9
 
 @dataclass(frozen=True)
 class Exposure:
-    """Shares of the drag of single twines, across them and by friction, and of single knots that
-    are left in a sheet, without the twine that knots hide; and the coefficient κ of its lift.
+    """Drag in a sheet over the drag of single twines and knots, and the coefficient κ of its lift.
+
+    Drag is that across twines, by friction along them, and on knots, without the twine that knots
+    hide.
     """
 
     normal: float = 1.0
@@ -48,9 +50,14 @@ class Exposure:
 
 @dataclass(frozen=True)
 class Sheet:
-    """Sheet of netting: unit vectors (n, 3) along its bars, in its own axes along, around and
-    across it; its ``slope`` to the flow (rad), its ``solidity``, and the area of ``knots`` per area
-    of twine.
+    """Sheet of netting.
+
+    Attributes
+    ----------
+    bars : (n, 3) array
+        Unit vectors along its bars, in axes along, around and across the sheet.
+    slope, solidity, knots
+        Slope to the flow (rad), solidity, and area of knots per area of twine.
     """
 
     bars: FloatArray
@@ -60,21 +67,21 @@ class Sheet:
 
     @property
     def flow(self) -> FloatArray:
-        """Direction (3,) of the flow far away."""
+        """Direction (3,) of the undisturbed flow."""
         return np.array([np.cos(self.slope), 0.0, np.sin(self.slope)])
 
 
 def bar_angle(section: SectionRecord, net: NettingRecord) -> float:
-    """Angle (rad) of the bars of a section of diamond meshes against its length."""
+    """Return the angle (rad) of the bars of a section of diamond meshes against its length."""
     angle = section.mesh_angle_deg
     return radians(net.codend_mesh_angle_deg if angle is None else angle)
 
 
 def sheet_of(section: SectionRecord, net: NettingRecord, closing: float) -> Sheet:
-    """Sheet of a section as it is drawn, a cone whose meshes are open by the angle of its bars.
+    """Return the sheet of a section as drawn: a cone opened by the angle of its bars.
 
-    A net that is closed behind gives off the water at its end through the netting too, as a cone
-    does whose circumference shrinks by ``closing`` more per length.
+    A net that is closed behind passes the water at its end through the netting too, as a cone does
+    whose circumference shrinks by ``closing`` more per length.
     """
     angle = 0.25 * pi if section.square else bar_angle(section, net)
     opening = 1.0 if section.square else np.tan(angle)
@@ -85,7 +92,7 @@ def sheet_of(section: SectionRecord, net: NettingRecord, closing: float) -> Shee
 
 
 def sheet(section: SectionRecord, net: NettingRecord, angle: float, slope: float) -> Sheet:
-    """Sheet of a section's netting with its bars at an angle (rad) and itself at a slope (rad)."""
+    """Return the sheet of a section's netting at a bar angle (rad) and a slope (rad)."""
     bar, diameter = 0.5 * section.mesh_m, section.twine_diameter_m
     solidity = 2.0 * section.twines * diameter / (bar * np.sin(2.0 * angle))
     bars = [(np.cos(angle), sign * np.sin(angle), 0.0) for sign in (1.0, -1.0)]
@@ -99,9 +106,9 @@ def sheet(section: SectionRecord, net: NettingRecord, angle: float, slope: float
 
 
 def loads(net: NettingRecord, sheet: Sheet, flow: FloatArray) -> FloatArray:
-    """Loads (3, 3) across twines, along them, and on knots, per ½ ρ and area of twine.
+    """Return loads (3, 3) across twines, along them, and on knots, per ½ ρ and area of twine.
 
-    ``flow`` (3,) is the water's motion at the twines, of the speed far away.
+    ``flow`` (3,) is the velocity of the water at the twines over the undisturbed speed.
     """
     along = sheet.bars @ flow
     across = flow - along[:, None] * sheet.bars
@@ -117,7 +124,7 @@ def loads(net: NettingRecord, sheet: Sheet, flow: FloatArray) -> FloatArray:
 
 
 def slowed(net: NettingRecord, sheet: Sheet) -> FloatArray:
-    """Motion (3,) of the water at the twines of a sheet, of its speed far away."""
+    """Return the velocity (3,) of the water at the twines over the undisturbed speed."""
     cosine, _, sine = sheet.flow
     lost = np.zeros(2)
     for _ in range(ROUNDS):
@@ -134,10 +141,10 @@ def slowed(net: NettingRecord, sheet: Sheet) -> FloatArray:
 
 
 def exposure_of(sheet: Sheet, net: NettingRecord) -> Exposure:
-    """Exposure of a sheet of netting: the drag of each kind over that of single twines and knots.
+    """Return the exposure of a sheet of netting.
 
-    Lift of panels goes with the square of their solidity, as `NettingRecord.lift` has it; of it the
-    bars have their own.
+    The lift of a panel goes with the square of its solidity (`NettingRecord.lift`); the part that
+    its bars have already is subtracted.
     """
     flow = sheet.flow
     single, left = (loads(net, sheet, motion) @ flow for motion in (flow, slowed(net, sheet)))
@@ -153,7 +160,7 @@ def exposure_of(sheet: Sheet, net: NettingRecord) -> Exposure:
 
 
 def bars_lift(net: NettingRecord, sheet: Sheet, shares: tuple[float, float, float]) -> float:
-    """Lift of the bars of a sheet at a small slope, per outline area and that slope."""
+    """Return the lift of the bars of a sheet at a small slope, per outline area and slope."""
     tilted = replace(sheet, slope=SMALL)
     force = np.array(shares) @ loads(net, tilted, tilted.flow)
     return float(sheet.solidity * force @ [-np.sin(SMALL), 0.0, np.cos(SMALL)] / np.sin(SMALL))
@@ -161,7 +168,7 @@ def bars_lift(net: NettingRecord, sheet: Sheet, shares: tuple[float, float, floa
 
 @lru_cache(1000)
 def exposure(section: SectionRecord, net: NettingRecord, closing: float = 0.0) -> Exposure:
-    """Exposure of the netting of a section, or that which the file gives."""
+    """Return the exposure of a section's netting, or the one that the gear file gives."""
     if section.ropes:
         return Exposure()
     if section.shielding is not None:
