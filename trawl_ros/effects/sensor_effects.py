@@ -33,8 +33,8 @@ DEPTHS = {
 }
 RANGES = {'spread': 'door_spread', 'opening_height': 'vertical_opening'}
 OTHER = {'port': 'starboard', 'starboard': 'port'}
-USUAL_INPUTS = (500.0, 500.0, 2.0)
-"""Warp lengths (m) and speed (m/s) in place of those that an instrument does not measure."""
+USUAL = np.array([500.0, 500.0, 2.0])
+"""Warp lengths (m) and speed (m/s) where an instrument does not know the others'."""
 
 
 def _other_side(name: str) -> str:
@@ -65,10 +65,10 @@ class SensorEffects:
             return sample
         if self._first is None or sample.stamp < self._first:
             self._first = sample.stamp
-        at = Situation(USUAL_INPUTS, hours=(sample.stamp - self._first) / HOUR_NS)
+        at = Situation((500.0, 500.0, 2.0), hours=(sample.stamp - self._first) / HOUR_NS)
         match sample:
             case WinchSample():
-                lengths = self._instrument(np.array([*sample.lengths, USUAL_INPUTS[2]]), at)[:2]
+                lengths = self._instrument(np.array([*sample.lengths, USUAL[2]]), at)[:2]
                 tensions = {
                     'port_tension': sample.tensions[0],
                     'starboard_tension': sample.tensions[1],
@@ -80,7 +80,7 @@ class SensorEffects:
                     tensions=(seen['port_tension'], seen['starboard_tension']),
                 )
             case VelocitySample(over='water'):
-                ahead = self._instrument(np.array([*USUAL_INPUTS[:2], sample.velocity[0]]), at)[2]
+                ahead = self._instrument(np.array([*USUAL[:2], sample.velocity[0]]), at)[2]
                 velocity = np.array([ahead, *sample.velocity[1:]])
                 return replace(sample, velocity=velocity)
             case PressureSample() if sample.place in DEPTHS:

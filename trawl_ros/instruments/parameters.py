@@ -10,7 +10,7 @@ from trawl_ros.core.errors import InstrumentError, TrawlError
 from trawl_ros.core.resources import packaged, share_path
 from trawl_ros.core.schema import Record, load_yaml, validated
 from trawl_ros.instruments.errors.channel import ErrorModel
-from trawl_ros.instruments.errors.false_echoes import FalseEchoModel
+from trawl_ros.instruments.errors.random_processes import FalseEchoModel
 from trawl_ros.instruments.errors.records import (
     AngleErrors,
     ForceErrors,
@@ -29,12 +29,11 @@ BASE = 'base'
 
 
 class WinchParameters(Timed):
-    """Winches: counter, pay-out speed and load cell; sides err independently.
+    """Winches: counter, pay-out speed and load cell; errors of both sides are independent.
 
-    The counting wheel counts wire as it is stretched when it passes: by its tension over
-    ``wire_stiffness_mn``, beyond what the counter was calibrated with, ``calibrated_at_kn``. The
-    load cell lags by friction: it follows the tension only once that has moved by
-    ``hysteresis_kn``.
+    The counting wheel counts stretched wire. Its error is the tension in excess of
+    ``calibrated_at_kn``, the tension of its calibration, over ``wire_stiffness_mn``. The load cell
+    has friction: it follows the tension only after a change of ``hysteresis_kn``.
     """
 
     length: LengthErrors
@@ -72,11 +71,10 @@ class LimitedLength(LengthErrors):
 class RangeParameters(LimitedLength, Timed):
     """Acoustic range sensor.
 
-    A share ``reflection_share`` of its readings are of echoes that came a longer way, by
-    ``reflection_m`` in the mean, ``reflection_run`` of them in a row; a share
-    ``ambiguity_share`` is taken for ``ambiguity_m`` more than it is, for it is heard in the
-    next period of the ranging, ``ambiguity_run`` of them in a row; a share ``double_share`` is
-    that of sound which went there and back twice, ``double_run`` of them in a row.
+    It has three kinds of false echoes, each with its share of the readings and its mean number of
+    readings in a row (``_run``). Reflections travel a longer path, by ``reflection_m`` on average.
+    Ambiguous readings are received in the next period of the ranging and are ``ambiguity_m`` too
+    long. Double echoes travel there and back twice.
     """
 
     reflection_share: Share = 0.0
@@ -130,9 +128,9 @@ class HeadingParameters(AngleErrors, Timed):
 class SpreadParameters(RangeParameters):
     """Acoustic spread sensor from door to door.
 
-    A time of flight is turned into metres with ``assumed_sound_speed_m_s``, whatever that of the
-    water is. Each door looks inward along its own normal, and hears nothing once the other is
-    more than ``beam_half_angle_deg`` off.
+    Travel times are converted with ``assumed_sound_speed_m_s``, whatever the speed of sound in the
+    water is. The beam of each door points inward along its normal. There is no reading if the other
+    door is more than ``beam_half_angle_deg`` off the beam.
     """
 
     assumed_sound_speed_m_s: SoundSpeed | None = None
@@ -148,31 +146,31 @@ class DoorParameters(Record):
 
 
 class SweepParameters(SweepRecord, Timed):
-    """Trawl sonar's sweeps: ``rate_hz`` of them per second, one begins as another ends."""
+    """Sweeps of the trawl sonar, ``rate_hz`` per second; each begins as the last one ends."""
 
     @model_validator(mode='after')
     def _time_to_listen(self) -> 'SweepParameters':
         needed = self.beams * self.listening_s * self.rate_hz
         if needed > 1 + 1e-9:
             raise ValueError(
-                f'rate_hz: found {self.rate_hz:g}, expected {self.rate_hz / needed:.3g} at most: '
-                f'{self.beams} pings of {self.listening_s:.3g} s each, until echoes are back from '
+                f'rate_hz: found {self.rate_hz:g}, expected at most {self.rate_hz / needed:.3g}: '
+                f'each of the {self.beams} pings waits {self.listening_s:.3g} s for echoes from '
                 'max_range_m'
             )
         return self
 
 
 class OpeningParameters(LimitedLength, Sent):
-    """Opening as it is read off each image: errors beside those that the image brings.
+    """Opening as read from each image: errors in addition to those of the image.
 
-    ``stated_std_m`` is what is said of the reading's error, all in all.
+    ``stated_std_m`` is the stated error of the reading, including that of the image.
     """
 
 
 class BottomParameters(RangeParameters):
-    """Sounder that looks down from the headrope.
+    """Sounder that points down from the headrope.
 
-    Times of flight are turned into metres with ``assumed_sound_speed_m_s``.
+    Travel times are converted with ``assumed_sound_speed_m_s``.
     """
 
     assumed_sound_speed_m_s: SoundSpeed
@@ -189,10 +187,10 @@ class SonarParameters(Record):
 
 
 class EchoSounderParameters(Record):
-    """Echo sounder under the keel: down to the seabed, and to the nearest fish in its beam.
+    """Echo sounder under the keel: distances to the seabed and to the nearest fish in its beam.
 
-    Times of flight are turned into metres with ``assumed_sound_speed_m_s``; the beam is
-    ``beam_width_deg`` wide in all.
+    Travel times are converted with ``assumed_sound_speed_m_s``; ``beam_width_deg`` is the full
+    width of the beam.
     """
 
     assumed_sound_speed_m_s: SoundSpeed
@@ -202,14 +200,14 @@ class EchoSounderParameters(Record):
 
 
 class FishSonarParameters(Timed):
-    """Fish sonar: a sweep over ``sector_deg`` in all, half of it to either side of ahead.
+    """Fish sonar: sweeps over ``sector_deg`` centred on the heading.
 
-    The beam looks down by ``beam_tilt_deg`` and is ``beam_width_deg`` high. ``range``,
-    ``bearing`` and ``tilt`` are the errors with which a school is placed.
+    The beam is tilted down by ``beam_tilt_deg`` and is ``beam_width_deg`` high. ``range``,
+    ``bearing`` and ``tilt`` are the errors of the position of a school.
 
-    ``fish_target_strength_db`` is that of one fish; of schools whose echo is as strong as
-    ``half_seen_db`` (of a source of 0 dB) half are seen, and ``fading_db`` says how soon more of
-    them are as it grows: with one ``fading_db`` more 73 %, with three more 95 %.
+    ``fish_target_strength_db`` is that of one fish. Half of the schools with an echo of
+    ``half_seen_db`` (for a source of 0 dB) are detected, 73 % with one ``fading_db`` more, and 95 %
+    with three ``fading_db`` more.
     """
 
     assumed_sound_speed_m_s: SoundSpeed
@@ -230,8 +228,7 @@ class FishSonarParameters(Timed):
 class VesselParameters(Record):
     """Sensors of the ship, and the datum of ``map``.
 
-    Her keel, with the echo sounder and the fish sonar under it, is ``draught_m`` below the
-    towing blocks.
+    The keel, which carries echo sounder and fish sonar, is ``draught_m`` below the towing blocks.
     """
 
     datum_lat_deg: Annotated[float, Field(ge=-89, le=89)]
@@ -260,8 +257,8 @@ def load_instruments(path: str | Path = 'default') -> InstrumentParameters:
     Parameters
     ----------
     path
-        A file that ends in ``.yaml``, or the name of a set that comes with the package. A file
-        with the key ``base`` names a set of the package and says only what differs from it.
+        A file that ends in ``.yaml``, or the name of a set in the package. A file with the key
+        ``base`` names a set of the package and has only the keys that differ from it.
 
     Returns
     -------
@@ -271,7 +268,7 @@ def load_instruments(path: str | Path = 'default') -> InstrumentParameters:
     Raises
     ------
     InstrumentError
-        Naming file, key, what was found and what was expected.
+        If the file is missing or a value is wrong; it names file, key, found and expected values.
 
     Examples
     --------
@@ -299,9 +296,9 @@ def default_instruments_with(
     Parameters
     ----------
     overrides
-        Nested as the file is, with those keys only that differ.
+        Keys that differ, nested as in the file.
     path, prefix
-        File and key where the overrides stand, for the error.
+        File and key of the overrides, for the error.
     error
         Class of the error to raise.
     """

@@ -5,7 +5,7 @@ from itertools import pairwise
 import pytest
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.errors.sampling import Sampler
+from trawl_ros.instruments.errors.instrument import Sampler
 
 
 def sampled(rate: float, stamps: list[int]) -> list[int]:

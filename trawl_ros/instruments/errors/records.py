@@ -8,9 +8,8 @@ import numpy as np
 from pydantic import Field, create_model, model_validator
 
 from trawl_ros.core.schema import Record
-from trawl_ros.instruments.errors.bursts import BurstModel
 from trawl_ros.instruments.errors.channel import ErrorModel
-from trawl_ros.instruments.errors.noise import NoiseModel
+from trawl_ros.instruments.errors.random_processes import BurstModel, NoiseModel
 
 NotNegative = Annotated[float, Field(ge=0)]
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
@@ -19,19 +18,20 @@ SoundSpeed = Annotated[float, Field(ge=1400, le=1600)]
 
 
 class ChannelErrors(Record):
-    """Errors of a channel in a unit of its own.
+    """Errors of a channel; keys end in its unit, here m.
 
-    Keys end in the unit. Standard deviations are ``noise_m``, drawn per sample, ``correlated_m``
-    of a first-order process with ``correlation_time_s``, ``bias_per_state_m``, drawn anew for
-    each state of the tow, and ``outlier_m`` of a share ``outlier_share`` of the readings.
-    ``scale_error`` is the part by which readings are too large, ``offset_m`` is added to them,
-    and ``drift_m_per_hour`` from the first reading on. Readings are multiples of
-    ``resolution_m``, none below ``lowest_m`` or above ``highest_m``. The sensor hangs
-    ``freezes_per_hour`` times, for ``freeze_s`` in the mean, and gives a share ``repeat_share``
-    of its readings a second time instead of a new one. ``stated_std_m`` is what the maker
-    states; if that is left out, noise and rounding together are stated. Noise grows by the part
-    ``noise_of_reading`` of the quantity, and is Student's t with ``noise_tail_dof`` degrees of
-    freedom, of the same standard deviation, where that is given.
+    Standard deviations are ``noise_m`` (independent in each sample), ``correlated_m`` (first-order
+    process with ``correlation_time_s``), ``bias_per_state_m`` (drawn again for each state of the
+    tow) and ``outlier_m`` (for a share ``outlier_share`` of the readings). Noise grows by the part
+    ``noise_of_reading`` of the quantity. With ``noise_tail_dof`` it has Student's t distribution
+    with these degrees of freedom and the same standard deviation.
+
+    ``scale_error`` is the relative excess of the readings, ``offset_m`` a constant error, and
+    ``drift_m_per_hour`` an error that grows from the first reading on. Readings are multiples of
+    ``resolution_m``, bounded by ``lowest_m`` and ``highest_m``. The sensor hangs
+    ``freezes_per_hour`` times, for ``freeze_s`` on average, and repeats a share ``repeat_share`` of
+    its readings. ``stated_std_m`` is the standard deviation that the maker states; by default it is
+    that of noise and rounding together.
     """
 
     unit: ClassVar[str]
@@ -50,7 +50,7 @@ class ChannelErrors(Record):
     def _time_for_correlation(self) -> 'ChannelErrors':
         if self._given('correlated') > 0 and self.correlation_time_s == 0:
             raise ValueError(
-                f'correlation_time_s: found 0, expected more, as correlated_{self.unit} is given'
+                f'correlation_time_s: found 0, expected more than 0 with correlated_{self.unit}'
             )
         if (self.freezes_per_hour > 0) != (self.freeze_s > 0):
             raise ValueError(
@@ -104,9 +104,9 @@ def in_unit(unit: str, si: float = 1.0) -> Callable[[type[ErrorsT]], type[Errors
     Parameters
     ----------
     unit
-        Last words of the keys.
+        Ending of the keys.
     si
-        The unit in that of the SI.
+        Value of the unit in SI.
     """
     keys = {
         f'noise_{unit}': (NotNegative, 0.0),

@@ -1,9 +1,9 @@
-"""Readings of the net's openings off an image of the trawl sonar, as its operator would take them.
+"""Readings of the net's openings from an image of the trawl sonar, as an operator takes them.
 
-Nothing goes in but the image and what its rows, columns and brightness stand for. The net shows
-as a line of echoes from side to side, with the footrope as its lowest point; fish between the
-ropes are nearer than the footrope and off the line. A seabed in view is a straight, very bright
-line, and all below it is left out. Where fish around the net hide the line, nothing is read.
+Input is the image with the meaning of its rows, columns and brightness only. The net is a line of
+echoes from side to side, with the footrope as its lowest point; fish between the ropes are nearer
+than the footrope and off the line. A seabed in view is a straight, very bright line; everything
+below it is ignored. If fish around the net hide the line, there is no reading.
 """
 
 import math
@@ -15,15 +15,15 @@ from trawl_ros.core.arrays import ByteArray, FloatArray, IntArray
 from trawl_ros.instruments.sonar.detection import CLEAR, contrast
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
 from trawl_ros.instruments.sonar.running import running_least, running_median
-from trawl_ros.instruments.sonar.seam import follow
 
 LOW_SECTOR = math.radians(30.0)
-"""The footrope's lowest point is looked for within this of straight down."""
+"""Greatest angle from straight down at which the footrope's lowest point is searched."""
 
 SIDE_SECTOR = math.radians(10.0)
-"""A side of the net is looked for beyond this; its netting is in view beyond `NETTING_SECTOR`."""
+"""Least angle from straight down at which a side of the net is searched."""
 
 NETTING_SECTOR = math.radians(40.0)
+"""Least angle from straight down at which the netting of a side is in view."""
 
 CROWD = 20
 """Echoes about as low as the lowest that make it doubtful which of them is the footrope. The
@@ -43,15 +43,15 @@ SEABED_TILTS = (0.0, 0.05, -0.05, 0.1, -0.1, 0.15, -0.15, 0.2, -0.2)
 """Slopes of such a line, the likeliest first: the headrope hangs level but for a turn."""
 
 _FEWEST = 6
-"""A side with clear echoes in fewer beams than this is not read."""
+"""Least number of beams with clear echoes for the reading of a side."""
 
 _AROUND = 3
-"""The widest place is fitted through so many beams to either side."""
+"""Number of beams on either side of the widest place through which a curve is fitted."""
 
 
 @dataclass(frozen=True)
 class Openings:
-    """Openings read off an image (m), NaN where they cannot be read.
+    """Openings read from an image (m), NaN if they cannot be read.
 
     ``height`` is from the sonar down to the footrope, ``width`` from side to side of the net.
     """
@@ -61,7 +61,7 @@ class Openings:
 
 
 def read_openings(image: ByteArray, grid: Grid) -> Openings:
-    """Read the openings off an image.
+    """Read the openings from an image.
 
     Parameters
     ----------
@@ -73,13 +73,13 @@ def read_openings(image: ByteArray, grid: Grid) -> Openings:
     level = contrast(image, grid)
     level = np.where(grid.ranges < _seabed(image, level, grid)[:, None], level, 0.0)
     halves = [_half_width(level[rows], angles, grid) for rows, angles in _sides(grid)]
-    # Where neither side can be told from what is around it, no footrope can.
+    # If neither side can be distinguished from its surroundings, neither can the footrope.
     height = math.nan if np.isnan(halves).all() else _height(level, grid)
     return Openings(height, sum(halves))
 
 
 def _sides(grid: Grid) -> list[tuple[IntArray, FloatArray]]:
-    """Rows of the port and of the starboard side from below upward, and their angles outward."""
+    """Return the rows of the port and the starboard side, upward, and their angles outward."""
     found = []
     for outward in (1.0, -1.0):
         rows = np.argsort(outward * grid.angles)
@@ -89,14 +89,14 @@ def _sides(grid: Grid) -> list[tuple[IntArray, FloatArray]]:
 
 
 def _height(level: FloatArray, grid: Grid) -> float:
-    """Height (m) by the lowest clear echo below the sonar; NaN where there is none."""
+    """Return the height (m) from the lowest clear echo below the sonar; NaN without one."""
     rows = np.flatnonzero(np.abs(grid.angles) < LOW_SECTOR)
     there = level[rows] >= CLEAR
     if not there.any():
         return math.nan
     down = grid.ranges * np.cos(grid.angles[rows])[:, None]
     row, column = np.nonzero(there & (down > down[there].max() - 1.0))
-    # The middle of each echo that low, not its lower end.
+    # Each echo counts with its centre, not with its lower end.
     lowest = max(
         _middle(level[rows[k]], column[row == k][-1], grid) * math.cos(grid.angles[rows[k]])
         for k in np.unique(row)
@@ -106,8 +106,8 @@ def _height(level: FloatArray, grid: Grid) -> float:
 
 
 def _half_width(level: FloatArray, angles: FloatArray, grid: Grid) -> float:
-    """Half width (m) of one side of the net, by a curve through the widest part of its line."""
-    line = follow(level)
+    """Return the half width (m) of a side, from a curve through the widest part of its line."""
+    line = follow(level, LineSearch())
     beams = np.arange(len(line))
     seen = level[beams, line] >= CLEAR
     if seen.sum() < _FEWEST:
@@ -132,7 +132,7 @@ def _half_width(level: FloatArray, angles: FloatArray, grid: Grid) -> float:
 
 
 def _middle(level: FloatArray, column: int, grid: Grid) -> float:
-    """Range (m) of the echo's centre in one beam at a column."""
+    """Return the range (m) of the echo's centre in one beam at a column."""
     around = np.arange(max(column - 3, 0), min(column + 3, grid.cells - 1) + 1)
     weight = np.maximum(level[around] - 0.5 * CLEAR, 0.0) ** 2
     if weight.sum() == 0.0:
@@ -141,9 +141,10 @@ def _middle(level: FloatArray, column: int, grid: Grid) -> float:
 
 
 def _seabed(image: ByteArray, level: FloatArray, grid: Grid) -> FloatArray:
-    """Range (beams,) from which on a beam may hear the seabed, infinite without one in view.
+    """Return the range (beams,) from which on a beam may receive the seabed, else infinity.
 
-    It is where the brightest echoes of many beams, nearly white, lie on one straight line.
+    The seabed is in view if the brightest echoes of many beams, nearly white, lie on one straight
+    line.
     """
     none = np.full(grid.beams, math.inf)
     brightest = np.argmax(level, axis=1)
@@ -169,5 +170,64 @@ def _seabed(image: ByteArray, level: FloatArray, grid: Grid) -> FloatArray:
         return none
     fall = np.cos(grid.angles) - slope * np.sin(grid.angles)
     along = np.where(fall > 0.05, depth / np.maximum(fall, 0.05), math.inf)
-    # A beam hears what its neighbours look at, too.
+    # A beam receives echoes from the directions of its neighbours too.
     return running_least(along, 7) - 1.0
+
+
+@dataclass(frozen=True)
+class LineSearch:
+    """Options of the search for a line that continues from beam to beam.
+
+    Attributes
+    ----------
+    reach_cells
+        Greatest change of the cell from one beam to the next.
+    cost_db
+        Cost of each cell of change, dB.
+    ceiling_db
+        Level from which brightness does not count, dB: a fish must not outweigh a row of ropes.
+    """
+
+    reach_cells: int = 14
+    cost_db: float = 0.5
+    ceiling_db: float = 25.0
+
+
+def follow(level: FloatArray, search: LineSearch) -> IntArray:
+    """Find the line with the largest sum of levels, by dynamic programming over the rows.
+
+    A line may pass through rows without an echo.
+
+    Parameters
+    ----------
+    level
+        Contrast, shape (rows, cells), dB.
+    search
+        Options.
+
+    Returns
+    -------
+    array
+        Cell of the line in each row, shape (rows,).
+    """
+    worth, reach = np.clip(level, 0.0, search.ceiling_db), search.reach_cells
+    rows, cells = worth.shape
+    steps = np.arange(-reach, reach + 1)
+    cost = search.cost_db * np.abs(steps)
+    total = np.full(cells + 2 * reach, -np.inf)
+    inner = slice(reach, reach + cells)
+    # A view: it shows the present totals of each cell's neighbours.
+    around = np.lib.stride_tricks.sliding_window_view(total, len(steps))
+    total[inner] = worth[0]
+    came_from = np.zeros((rows, cells), dtype=int)
+    everywhere = np.arange(cells)
+    for row in range(1, rows):
+        reached = around - cost
+        step = np.argmax(reached, axis=1)
+        came_from[row] = everywhere + steps[step]
+        total[inner] = worth[row] + reached[everywhere, step]
+    line = np.empty(rows, dtype=int)
+    line[-1] = np.argmax(total[inner])
+    for row in range(rows - 1, 0, -1):
+        line[row - 1] = came_from[row, line[row]]
+    return line
