@@ -381,11 +381,11 @@ def test_a_plan_that_cannot_be_is_refused(tmp_path: Path, change: Any, part: str
 @pytest.mark.parametrize(
     ('changes', 'part'),
     [
-        ({'netting': {'wing_end_m': 3.0}}, 'netting.wing_end_m: found beside a plan'),
+        ({'netting': {'wing_end_m': 3.0}}, 'netting.wing_end_m: found'),
         ({'hung': [{'name': 'x', 'rope': 'kite', 'buoyancy_n': 1.0}]}, 'hung[0].rope: found kite'),
         (
             {'hung': [{'name': 'x', 'rope': 'headrope'}]},
-            'hung[0]: needs either weight_in_water_n or buoyancy_n',
+            'hung[0]: found 0',
         ),
         (
             {'bridles': [{'name': 'upper', 'at_board': 'upper', 'at_net': 'upper'}]},

@@ -7,8 +7,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.gear.rigging import ENDS, HungRecord
-from trawl_ros.gear.ropes import RopeRecord
+from trawl_ros.gear.rigging import ENDS, HungRecord, RopeRecord
 from trawl_ros.model.hooks import NodeForce
 from trawl_ros.model.kite import LiftingBodies
 from trawl_ros.model.net.catch import CodendCatch, place_catch
