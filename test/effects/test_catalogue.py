@@ -79,7 +79,7 @@ def test_what_other_packages_get_wrong_is_told(points):
     with pytest.raises(TrawlError, match='entry point number'):
         catalogue()
     points[:] = [point('ice', lambda: FOREIGN), point('snow', lambda: FOREIGN)]
-    with pytest.raises(TrawlError, match='entry point snow.* ice'):
+    with pytest.raises(TrawlError, match=r'entry point snow.* ice'):
         catalogue()
 
 
@@ -110,5 +110,5 @@ def test_values_that_are_not_given_are_neutral(gear):
 
 def test_what_is_told_from_readings_alone_is_refused_in_a_gear_file(gear):
     record = EffectRecord(name='frozen_sensor', values={})
-    with pytest.raises(GearError, match='effects.0.name: frozen_sensor'):
+    with pytest.raises(GearError, match=r'effects\.0\.name: frozen_sensor'):
         effects_of(gear.model_copy(update={'effects': (record,)}))

@@ -1,6 +1,6 @@
 """Tables on the standard output: as wide as they need to be where it is no terminal."""
 
-from rich.console import Console
+from rich.console import Console, JustifyMethod
 from rich.table import Table
 
 FILE_WIDTH = 240
@@ -13,11 +13,14 @@ def output_console() -> Console:
     return console if console.is_terminal else Console(highlight=False, width=FILE_WIDTH)
 
 
-def plain_table(*headings: str, right: tuple[str, ...] = ()) -> Table:
-    """A table without frame; columns named in ``right`` hold numbers."""
+def plain_table(
+    *headings: str, right: tuple[str, ...] = (), wrapped: tuple[str, ...] = ()
+) -> Table:
+    """A table without frame: numbers in columns ``right``, long texts in columns ``wrapped``."""
     table = Table(box=None, pad_edge=False)
     for heading in headings:
-        table.add_column(heading, justify='right' if heading in right else 'left', no_wrap=True)
+        justify: JustifyMethod = 'right' if heading in right else 'left'
+        table.add_column(heading, justify=justify, no_wrap=heading not in wrapped)
     return table
 
 

@@ -47,10 +47,10 @@ class NettingRecord(Record):
     area, under which it sags between its knots; without it bars are straight.
 
     ``normal_drag`` (eq. 23), ``friction`` (eq. 24) and ``knot_drag`` are the coefficients at high
-    Reynolds numbers. ``viscous`` is a factor on their increase at low Reynolds numbers
-    (`trawl_ros.model.net.twine_drag`). ``wake_exchange`` is the exchange of water along a sheet
-    with the water outside (`trawl_ros.model.net.wake`), ``lift`` the lift of sheets per square of
-    their solidity. Defaults agree with measured panels (config/panels).
+    Reynolds numbers. ``viscous`` is a factor on their increase at low Reynolds numbers,
+    ``wake_exchange`` the exchange of water along a sheet with the water outside, and ``lift`` the
+    lift of sheets per square of their solidity (`trawl_ros.model.net.wake`). Defaults agree with
+    measured panels (config/panels).
     """
 
     around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]

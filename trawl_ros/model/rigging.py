@@ -11,7 +11,7 @@ from trawl_ros.gear.rigging import ENDS, HungRecord, RopeRecord
 from trawl_ros.model.hooks import NodeForce
 from trawl_ros.model.kite import LiftingBodies
 from trawl_ros.model.net.catch import CodendCatch, place_catch
-from trawl_ros.model.net.twine_drag import viscous, viscous_knots
+from trawl_ros.model.net.wake import viscous, viscous_knots
 from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.water import Water
 

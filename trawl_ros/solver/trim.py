@@ -135,7 +135,14 @@ def trim(
         return observe(found.model, found.state, tow).port_attack - attack
 
     # Attack differs from yaw by what pitch, roll and the gear's own motion add: a few degrees.
-    yaw = brentq(excess, attack - 0.15, attack + 0.15, xtol=1e-6)
+    try:
+        yaw = brentq(excess, attack - 0.15, attack + 0.15, xtol=1e-6)
+    except ValueError as reason:
+        # The boards' own motion adds more than that where they lie nearly flat.
+        raise NoSteadyState(
+            f'no yaw within {np.degrees(0.15):.1f}° of the wanted attack angle, '
+            f'{np.degrees(attack):.1f}°, gives the boards that angle'
+        ) from reason
     found.balance(attitudes(yaw, pitch, roll))
     # The trimmed shape is the start: released, the boards stay where they were held.
     trimmed = model.with_board(points=found.model.board.points)

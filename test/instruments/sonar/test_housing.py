@@ -60,8 +60,8 @@ def test_a_set_speed_of_sound_stretches_the_sounding_too() -> None:
 @pytest.mark.parametrize(
     ('key', 'value', 'named'),
     [
-        ('max_range_m', 120.0, 'rate_hz: found 0.1'),
-        ('min_range_m', 95.0, 'max_range_m: found 90'),
+        ('max_range_m', 200.0, 'rate_hz: found 0.0625'),
+        ('min_range_m', 155.0, 'max_range_m: found 150'),
         ('white_db', -70.0, 'white_db: found -70'),
         ('freeze_s', 3.0, 'freezes_per_hour: found 0 with freeze_s 3'),
     ],

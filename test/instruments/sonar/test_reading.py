@@ -8,7 +8,13 @@ import pytest
 
 from trawl_ros.instruments.sonar.detection import clear_echoes, first_echoes
 from trawl_ros.instruments.sonar.image import Grid
-from trawl_ros.instruments.sonar.reading import LineSearch, Openings, follow, read_openings
+from trawl_ros.instruments.sonar.reading import (
+    LineSearch,
+    Openings,
+    ReadingOptions,
+    follow,
+    read_openings,
+)
 
 GRID = Grid(80, 450, math.radians(-100.0), math.radians(200.0 / 79), 1.0, 90.0, 40.0)
 SIDE = 30.0
@@ -50,7 +56,9 @@ def image(seed: int = 0, *, scale: float = 1.0) -> np.ndarray:
 
 
 def test_nothing_goes_in_but_the_image_and_what_it_means() -> None:
-    assert list(inspect.signature(read_openings).parameters) == ['image', 'grid']
+    given = inspect.signature(read_openings).parameters
+    assert list(given) == ['image', 'grid', 'options']
+    assert given['options'].default == ReadingOptions()
 
 
 def test_a_net_is_read_as_it_was_painted() -> None:

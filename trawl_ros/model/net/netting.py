@@ -27,11 +27,11 @@ from trawl_ros.model.net.planned_mouth import Place, PlannedMouth
 from trawl_ros.model.net.rows import NettingRow, Profile, rows_of
 from trawl_ros.model.net.weave import NetMesh, add_codend, weave
 
-NETS = 4
+CACHED_NETS = 4
 """Number of nets kept; gears that differ only in their rigging share one."""
 
 
-@lru_cache(NETS)
+@lru_cache(CACHED_NETS)
 def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
     """Group the netting of a gear into nodes and bars.
 

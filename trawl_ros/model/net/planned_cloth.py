@@ -14,13 +14,13 @@ from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.model.net.planned_mouth import PlannedMouth
 from trawl_ros.model.net.rows import NettingRow, Profile
 
-SEA = 1025.0
-"""Density (kg/m³) of the water in the twines."""
+SEA_DENSITY_KG_M3 = 1025.0
+"""Density of the water in the twines."""
 
-WIDEST = np.radians(80.0)
-"""Angle of bars beyond which knots do not keep them."""
+MAX_BAR_ANGLE_RAD = np.radians(80.0)
+"""Greatest angle at which knots hold the bars."""
 
-LEAST_SHARE = 0.3
+LEAST_COLUMN_FRACTION = 0.3
 """Least part of its column that a bar at the edge of a wing has, so that it can bear a load."""
 
 PANELS = ('upper', 'side_upper', 'side_lower', 'lower')
@@ -39,7 +39,7 @@ def mesh_angle(piece: PieceRecord, net: NettingRecord) -> float:
         return angle
     knots = min(2 * net.knot_diameters * piece.twine.diameter / piece.mesh, 1.0)
     sine = np.sin(angle) + knots * (1.0 - np.sin(angle))
-    return float(min(np.arcsin(sine), WIDEST))
+    return float(min(np.arcsin(sine), MAX_BAR_ANGLE_RAD))
 
 
 def section_of(
@@ -57,7 +57,7 @@ def section_of(
         'back_circumference_m': max(back, 1e-6),
         'mesh_m': piece.mesh,
         'twine_diameter_m': twine.diameter,
-        'twine_density_kg_m3': twine.density(SEA),
+        'twine_density_kg_m3': twine.density(SEA_DENSITY_KG_M3),
         'twine_modulus_pa': twine.fibre.modulus,
         'twines': piece.twines,
         'knotless': piece.knots == 'knotless' or piece.orientation == 'ropes',
@@ -170,7 +170,7 @@ class PlannedCloth:
         if row.back <= 1e-9:
             wing = self.mouth.wing_at(2 * self.mouth.around * place)
             inside = self._inside(row, low, high)
-            scale = max(inside, LEAST_SHARE) / max(sum(shares.values()), 1e-12)
+            scale = max(inside, LEAST_COLUMN_FRACTION) / max(sum(shares.values()), 1e-12)
             shares = {panel: scale * share for panel, share in shares.items()}
         else:
             wing = 0

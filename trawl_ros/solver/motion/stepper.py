@@ -14,8 +14,7 @@ with a spectral radius of 0.4, none with this, and the tow takes three fifths of
 
 NEARER = 0.05
 """The root is found to this part of the tolerance before it is linearised. Bars that go slack
-change their stiffness over a ten-thousandth of strain: with the tolerance as it is, derivatives of
-the default gear are up to 4e-4 off those at the root itself, with a tenth of it 5e-6."""
+change their stiffness over a ten-thousandth of strain, so derivatives need a closer root."""
 
 LONG_S = 2.0
 """Steps (s) longer than this take a matrix for each iteration, for a kept one serves few of them.

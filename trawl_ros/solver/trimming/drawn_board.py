@@ -30,9 +30,6 @@ Place = tuple[float, float]
 STIFFNESS = UNKNOWN[:1]
 """Shifts of the centre of pressure against which the first rigging is stiff: one is quick."""
 
-NO_BEGINNING = 'no state with the prior mean'
-"""Counts boards that tow, but whose holes hold the prior's mean nowhere: no fit could begin."""
-
 
 @dataclass(frozen=True)
 class BoardDraw:
@@ -108,8 +105,7 @@ def draw_board(
         The gear that is towed. Its prior is normal, cut at the bounds.
     places
         Warp length (m) and speed (m/s) of each state in which the gear must be usable: stable,
-        under water, and its boards within the range of their law. With the prior's mean it must be
-        so at one end of their range at least, where an identification begins.
+        under water, and its boards within the range of their law.
     rng
         Generator of random numbers.
     options
@@ -149,9 +145,6 @@ def draw_board(
             steady = _steady_states(model, places)
         except NoSteadyState as refusal:
             rejected[refusal.reason] += 1
-            continue
-        if not _can_begin(coarse.with_board(points=points), places):
-            rejected[NO_BEGINNING] += 1
             continue
         return DrawnBoard(own, model, steady, rejected)
     reasons = ', '.join(f'{reason} {count}' for reason, count in rejected.most_common())
@@ -213,18 +206,6 @@ def _rigged(model: GearModel, places: Sequence[Place], options: BoardDraw) -> Fl
     limits = hole_limits(model.board)
     trim = ReleasedTrim(evaluations=options.evaluations)
     return released_points(model, held.points, limits, wanted, ends, trim)
-
-
-def _can_begin(model: GearModel, places: Sequence[Place]) -> bool:
-    """True if boards of the prior's mean can be towed at any end of the range of places."""
-    mean = model.with_coefficients(np.array(model.gear.identification.start))
-    for place in _ends(places):
-        try:
-            steady_state(mean, *place)
-        except NoSteadyState:
-            continue
-        return True
-    return False
 
 
 def _ends(places: Sequence[Place]) -> list[Place]:

@@ -46,10 +46,14 @@ class MeasuredAngles:
     @property
     def met(self) -> bool:
         """True if spread and depth are those wanted within `MET`."""
+        return self.missed_by < MET
+
+    @property
+    def missed_by(self) -> float:
+        """Larger of the parts by which the wishes for spread and depth are missed."""
         seen = self.observables
-        return bool(
-            abs(seen.door_spread - self.spread) < MET * self.spread
-            and abs(seen.door_depth - self.depth) < MET * self.depth
+        return max(
+            abs(seen.door_spread / self.spread - 1.0), abs(seen.door_depth / self.depth - 1.0)
         )
 
     @property

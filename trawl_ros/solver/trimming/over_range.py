@@ -38,7 +38,7 @@ NEAR = 3.0
 REACH = 0.3, 0.01
 """Largest change of a coordinate at once, and the one at which the search ends, m."""
 
-HOLES = 0.47, 0.2, 0.46
+MAX_HOLE_OFFSETS = 0.47, 0.2, 0.46
 """Largest distance of a hole from the centre of gravity: along the chord and off the face, where a
 bracket carries it (both in chords), and along the span (in spans)."""
 
@@ -127,7 +127,7 @@ class RangeTrim:
 
 def hole_limits(board: Board) -> FloatArray:
     """Largest distance (3,) of a hole from the centre of gravity, in the outward frame, m."""
-    return np.multiply(HOLES, (board.chord, board.chord, board.span))
+    return np.multiply(MAX_HOLE_OFFSETS, (board.chord, board.chord, board.span))
 
 
 def trim_over_range(
