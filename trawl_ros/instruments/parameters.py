@@ -22,6 +22,7 @@ from trawl_ros.instruments.errors.records import (
     SoundSpeed,
     SpeedErrors,
     TurnErrors,
+    both_or_neither,
 )
 from trawl_ros.instruments.errors.timing import Sent, Timed
 from trawl_ros.instruments.sonar.records import SweepRecord
@@ -143,12 +144,7 @@ class RangeParameters(LimitedLength, Timed):
     @model_validator(mode='after')
     def _false_echoes_have_a_size(self) -> 'RangeParameters':
         for kind in ('reflection', 'ambiguity'):
-            share, metres = getattr(self, f'{kind}_share'), getattr(self, f'{kind}_m')
-            if (share > 0) != (metres > 0):
-                raise ValueError(
-                    f'{kind}_share: found {share:g} with {kind}_m {metres:g}, expected both or '
-                    'neither'
-                )
+            both_or_neither(**{key: getattr(self, key) for key in (f'{kind}_share', f'{kind}_m')})
         return self
 
     def model(self) -> ErrorModel:

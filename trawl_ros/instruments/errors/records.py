@@ -17,6 +17,21 @@ Share = Annotated[float, Field(ge=0, le=1)]
 SoundSpeed = Annotated[float, Field(ge=1400, le=1600)]
 
 
+def both_or_neither(**values: float) -> None:
+    """Check that two numbers are both positive or both zero.
+
+    Raises
+    ------
+    ValueError
+        If only one is positive; it names both keys.
+    """
+    (first, one), (second, other) = values.items()
+    if (one > 0) != (other > 0):
+        raise ValueError(
+            f'{first}: found {one:g} with {second} {other:g}, expected both or neither'
+        )
+
+
 class ChannelErrors(Record):
     """Errors of a channel; keys end in its unit, here m.
 
@@ -52,16 +67,9 @@ class ChannelErrors(Record):
             raise ValueError(
                 f'correlation_time_s: found 0, expected more than 0 with correlated_{self.unit}'
             )
-        if (self.freezes_per_hour > 0) != (self.freeze_s > 0):
-            raise ValueError(
-                f'freezes_per_hour: found {self.freezes_per_hour:g} with freeze_s '
-                f'{self.freeze_s:g}, expected both or neither'
-            )
-        if (self.outlier_share > 0) != (self._given('outlier') > 0):
-            raise ValueError(
-                f'outlier_share: found {self.outlier_share:g} with outlier_{self.unit} '
-                f'{self._given("outlier"):g}, expected both or neither'
-            )
+        both_or_neither(freezes_per_hour=self.freezes_per_hour, freeze_s=self.freeze_s)
+        size = {f'outlier_{self.unit}': self._given('outlier')}
+        both_or_neither(outlier_share=self.outlier_share, **size)
         return self
 
     def model(self) -> ErrorModel:

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
 from trawl_ros.instruments.errors.random_processes import NO_BURSTS, BurstModel
-from trawl_ros.instruments.errors.records import NotNegative, Seconds, Share
+from trawl_ros.instruments.errors.records import NotNegative, Seconds, Share, both_or_neither
 
 
 @dataclass(frozen=True)
@@ -55,11 +55,7 @@ class Sent(Record):
 
     @model_validator(mode='after')
     def _dropouts_have_a_length(self) -> 'Sent':
-        if (self.dropouts_per_hour > 0) != (self.dropout_s > 0):
-            raise ValueError(
-                f'dropouts_per_hour: found {self.dropouts_per_hour:g} with dropout_s '
-                f'{self.dropout_s:g}, expected both or neither'
-            )
+        both_or_neither(dropouts_per_hour=self.dropouts_per_hour, dropout_s=self.dropout_s)
         return self
 
     def timing(self) -> Timing:

@@ -12,6 +12,7 @@ from trawl_ros.instruments.errors.records import (
     NotNegative,
     Share,
     SoundSpeed,
+    both_or_neither,
 )
 from trawl_ros.instruments.sonar.echoes import Beam, Strengths
 from trawl_ros.instruments.sonar.image import Grid
@@ -89,11 +90,7 @@ class SweepRecord(Record):
                 raise ValueError(
                     f'{high}: found {most:g}, expected more than {low}, which is {least:g}'
                 )
-        if (self.freezes_per_hour > 0) != (self.freeze_s > 0):
-            raise ValueError(
-                f'freezes_per_hour: found {self.freezes_per_hour:g} with freeze_s '
-                f'{self.freeze_s:g}, expected both or neither'
-            )
+        both_or_neither(freezes_per_hour=self.freezes_per_hour, freeze_s=self.freeze_s)
         return self
 
     @property
