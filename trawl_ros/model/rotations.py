@@ -28,9 +28,9 @@ def _fill_rotations(vectors: FloatArray, matrices: FloatArray) -> None:
             size = np.sqrt(real)
             at_sine, at_versine = np.sin(size) / size, (1 - np.cos(size)) / real
             # The imaginary part is a complex step: its first-order term is exact to rounding.
-            beside = 0.5 * (square - real) / real
-            sine = at_sine + (1 - real * at_versine - at_sine) * beside
-            versine = at_versine + (at_sine - 2 * at_versine) * beside
+            imaginary = 0.5 * (square - real) / real
+            sine = at_sine + (1 - real * at_versine - at_sine) * imaginary
+            versine = at_versine + (at_sine - 2 * at_versine) * imaginary
         for i in range(3):
             for j in range(3):
                 matrices[n, i, j] = versine * vectors[n, i] * vectors[n, j]

@@ -12,7 +12,7 @@ def sampled(rate: float, stamps: list[int]) -> list[int]:
     sampler = Sampler(rate)
     taken = []
     for stamp in stamps:
-        sampler.started_anew(stamp)
+        sampler.restarted(stamp)
         if sampler.due(stamp):
             taken.append(stamp)
     return taken

@@ -73,17 +73,17 @@ class Sampler:
         """Stamp of the first truth (ns)."""
         return self._first
 
-    def started_anew(self, stamp: int) -> bool:
+    def restarted(self, stamp: int) -> bool:
         """Register a stamp (ns); return True if it is the first or precedes the last one."""
-        anew = self._latest is None or stamp < self._latest
+        restarts = self._latest is None or stamp < self._latest
         self._latest = stamp
-        if anew:
+        if restarts:
             self._first = stamp
             self._next = 0
-        return anew
+        return restarts
 
     def due(self, stamp: int, shift_s: float = 0.0) -> bool:
-        """Return True if a sample is due at ``stamp`` (ns), which `started_anew` has registered.
+        """Return True if a sample is due at ``stamp`` (ns), which `restarted` has registered.
 
         ``shift_s`` is the delay of the next sample after its regular time, s.
         """
@@ -153,15 +153,15 @@ class SamplingClock:
         for kind in list(self._faults):
             self.take_off(kind)
 
-    def started_anew(self, stamp: int) -> bool:
+    def restarted(self, stamp: int) -> bool:
         """Register a stamp (ns); return True if it is the first or precedes the last one."""
-        anew = self._sampler.started_anew(stamp)
-        if anew:
+        restarts = self._sampler.restarted(stamp)
+        if restarts:
             self._restart()
-        return anew
+        return restarts
 
     def due(self, stamp: int) -> bool:
-        """Return True if a sample is due at a stamp (ns), which `started_anew` has registered."""
+        """Return True if a sample is due at a stamp (ns), which `restarted` has registered."""
         size = self._timing.jitter + self._faults.get('jitter', 0.0)
         if not self._sampler.due(stamp, size * self._shift if size else 0.0):
             return False
@@ -274,7 +274,7 @@ class Instrument(ABC, Generic[PartT, SampleT]):
         list of Sample
             Samples that arrive now. A latency makes them samples of earlier stamps.
         """
-        if self._beat.started_anew(stamp):
+        if self._beat.restarted(stamp):
             self._under_way.clear()
             for channel in self._channels.values():
                 channel.restart()

@@ -6,8 +6,8 @@ from trawl_ros.core.arrays import ByteArray, FloatArray, IntArray
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
 from trawl_ros.instruments.sonar.running import running_mean
 
-CLEAR = 12.0
-"""Contrast (dB) from which an echo is clear.
+CLEAR_CONTRAST_DB = 12.0
+"""Contrast from which an echo is clear.
 
 Means over three cells of noise have a standard deviation of 3.2 dB; few per million exceed it.
 """
@@ -49,7 +49,7 @@ def clear_echoes(image: ByteArray, grid: Grid) -> tuple[IntArray, IntArray]:
         Shape (n,) each: brightest cell of each run of clear cells, sorted by row and range.
     """
     level = contrast(image, grid)
-    there = level >= CLEAR
+    there = level >= CLEAR_CONTRAST_DB
     begins = there & ~np.pad(there, ((0, 0), (1, 0)))[:, :-1]
     rows, starts = np.nonzero(begins)
     if len(rows) == 0:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import ByteArray, FloatArray, IntArray
-from trawl_ros.instruments.sonar.detection import CLEAR, contrast
+from trawl_ros.instruments.sonar.detection import CLEAR_CONTRAST_DB, contrast
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
 from trawl_ros.instruments.sonar.running import running_least, running_median
 
@@ -83,7 +83,7 @@ class ReadingOptions:
     line: LineSearch = LineSearch()
 
 
-READING = ReadingOptions()
+DEFAULT_READING = ReadingOptions()
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,9 @@ class Openings:
     width: float
 
 
-def read_openings(image: ByteArray, grid: Grid, options: ReadingOptions = READING) -> Openings:
+def read_openings(
+    image: ByteArray, grid: Grid, options: ReadingOptions = DEFAULT_READING
+) -> Openings:
     """Read the openings from an image.
 
     Parameters
@@ -132,7 +134,7 @@ def _sides(grid: Grid, options: ReadingOptions) -> list[tuple[IntArray, FloatArr
 def _height(level: FloatArray, grid: Grid, options: ReadingOptions) -> float:
     """Return the height (m) from the lowest clear echo below the sonar; NaN without one."""
     rows = np.flatnonzero(np.abs(grid.angles) < options.footrope_sector)
-    there = level[rows] >= CLEAR
+    there = level[rows] >= CLEAR_CONTRAST_DB
     if not there.any():
         return math.nan
     down = grid.ranges * np.cos(grid.angles[rows])[:, None]
@@ -152,13 +154,17 @@ def _half_width(
     """Return the half width (m) of a side, from a curve through the widest part of its line."""
     line = follow(level, options.line)
     beams = np.arange(len(line))
-    seen = level[beams, line] >= CLEAR
+    seen = level[beams, line] >= CLEAR_CONTRAST_DB
     if seen.sum() < options.least_beams:
         return math.nan
     netting = seen & (angles > options.netting_sector)
-    beside = (level >= CLEAR) & (grid.ranges > grid.ranges[line][:, None] + 2.0) & netting[:, None]
+    outside = (
+        (level >= CLEAR_CONTRAST_DB)
+        & (grid.ranges > grid.ranges[line][:, None] + 2.0)
+        & netting[:, None]
+    )
     looked = grid.angle_increment * max(netting.sum(), 1)
-    if (beside[:, 1:] & ~beside[:, :-1]).sum() > options.crowd_beside_per_rad * looked:
+    if (outside[:, 1:] & ~outside[:, :-1]).sum() > options.crowd_beside_per_rad * looked:
         return math.nan
     at = angles[seen]
     out = np.array([_middle(level[k], line[k], grid) for k in beams[seen]]) * np.sin(at)
@@ -178,7 +184,7 @@ def _half_width(
 def _middle(level: FloatArray, column: int, grid: Grid) -> float:
     """Return the range (m) of the echo's centre in one beam at a column."""
     around = np.arange(max(column - 3, 0), min(column + 3, grid.cells - 1) + 1)
-    weight = np.maximum(level[around] - 0.5 * CLEAR, 0.0) ** 2
+    weight = np.maximum(level[around] - 0.5 * CLEAR_CONTRAST_DB, 0.0) ** 2
     if weight.sum() == 0.0:
         return float(grid.ranges[column])
     return float(weight @ grid.ranges[around] / weight.sum())
@@ -195,7 +201,7 @@ def _seabed(image: ByteArray, level: FloatArray, grid: Grid, options: ReadingOpt
     each = np.arange(grid.beams)
     rows = np.flatnonzero(
         (np.abs(grid.angles) < options.seabed_sector)
-        & (level[each, brightest] >= CLEAR)
+        & (level[each, brightest] >= CLEAR_CONTRAST_DB)
         & (image[each, brightest] > options.seabed_white * BRIGHTEST)
     )
     if len(rows) < options.seabed_beams:

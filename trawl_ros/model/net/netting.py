@@ -140,7 +140,8 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | No
         kite = _kite_nodes(rows, made.index, kite_chord)
         if headrope[len(headrope) // 2] != kite.nodes[0]:
             raise GearError(
-                'kite: found beside an upper panel that reaches ahead of the mouth, expected one'
+                'kite: found with an upper panel that reaches ahead of the mouth, expected a panel '
+                'that ends at the mouth, or no kite'
             )
     return NetMesh(
         positions=np.array(made.positions),
