@@ -10,7 +10,7 @@ from trawl_ros.diagnosis.report.sentences import headline, sentences
 from trawl_ros.diagnosis.report.writing import write_diagnosis
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.effect_set import ActiveEffect, effects_of
-from trawl_ros.effects.empirical.library import dictionary
+from trawl_ros.effects.empirical import dictionary
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear

@@ -70,35 +70,35 @@ def test_what_other_packages_get_wrong_is_told(points):
         raise ImportError('no such module')
 
     points.append(point('broken', broken))
-    with pytest.raises(TrawlError, match='entry point broken = package:broken: cannot be loaded'):
+    with pytest.raises(TrawlError, match='entry point broken = package:broken'):
         catalogue()
     points[:] = [point('leaving', lambda: sys.exit(0))]
     with pytest.raises(TrawlError, match='entry point leaving'):
         catalogue()
     points[:] = [point('number', lambda: 3)]
-    with pytest.raises(TrawlError, match='found a int, expected an Effect'):
+    with pytest.raises(TrawlError, match='entry point number'):
         catalogue()
     points[:] = [point('ice', lambda: FOREIGN), point('snow', lambda: FOREIGN)]
-    with pytest.raises(TrawlError, match='the name ice is taken'):
+    with pytest.raises(TrawlError, match=r'entry point snow.* ice'):
         catalogue()
 
 
 @pytest.mark.parametrize(
-    ('record', 'told'),
+    ('record', 'key'),
     [
-        (EffectRecord(name='ghost'), 'effects.0.name: found ghost, expected one of'),
+        (EffectRecord(name='ghost'), 'effects.0.name: found ghost'),
         (
             EffectRecord(name='heave', values={'height': 1.0}),
-            'effects.0.values: found height, expected variance of heave',
+            'effects.0.values: found height',
         ),
         (
             EffectRecord(name='warp_strumming', values={'factor': 9.0}),
-            'effects.0.values.factor: found 9, expected 0.7 to 2.5',
+            'effects.0.values.factor: found 9',
         ),
     ],
 )
-def test_a_gear_file_is_held_to_it(gear, record, told):
-    with pytest.raises(GearError, match=told):
+def test_a_gear_file_is_held_to_it(gear, record, key):
+    with pytest.raises(GearError, match=key):
         effects_of(gear.model_copy(update={'effects': (record,)}))
 
 
@@ -110,5 +110,5 @@ def test_values_that_are_not_given_are_neutral(gear):
 
 def test_what_is_told_from_readings_alone_is_refused_in_a_gear_file(gear):
     record = EffectRecord(name='frozen_sensor', values={})
-    with pytest.raises(GearError, match='expected it among the faults of a scenario'):
+    with pytest.raises(GearError, match=r'effects\.0\.name: frozen_sensor'):
         effects_of(gear.model_copy(update={'effects': (record,)}))

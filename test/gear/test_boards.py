@@ -144,15 +144,15 @@ def test_corrections_to_a_law_have_a_prior(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ('law', 'part'),
     [
-        ({'kind': 'table'}, 'board.law: a table needs either door or points, found 0'),
-        ({'kind': 'table', 'door': 'nothing_like_it'}, 'comes with no such file'),
-        ({'kind': 'foil', 'max_lift': 1.5}, 'board.law: a foil needs max_lift and stall_deg'),
+        ({'kind': 'table'}, 'board.law: found 0'),
+        ({'kind': 'table', 'door': 'nothing_like_it'}, 'no such file'),
+        ({'kind': 'foil', 'max_lift': 1.5}, 'stall_deg'),
         (
             {'kind': 'table', 'door': 'flat_wooden', 'heel': [{'tilt_deg': 5.0, 'upward': 0.2}]},
-            'board.law.heel: found tilt_deg [5.0], expected rising angles around 0',
+            'board.law.heel: found tilt_deg [5.0]',
         ),
         (FOIL | {'trim': [{'tilt_deg': 0.0, 'upward': 0.0}]}, 'found door, points, heel or trim'),
-        ({'kind': 'spline'}, "board.law.kind: found 'spline', expected 'table' or 'foil'"),
+        ({'kind': 'spline'}, "board.law.kind: found 'spline'"),
         (
             {
                 'kind': 'table',
@@ -161,7 +161,7 @@ def test_corrections_to_a_law_have_a_prior(tmp_path: Path) -> None:
                     {'attack_deg': 10.0, 'lift': 0.5, 'drag': 0.2},
                 ],
             },
-            'points: angles must rise, found [20.0, 10.0]',
+            '[20.0, 10.0]',
         ),
     ],
 )

@@ -66,53 +66,59 @@ def test_what_is_not_given_is_told() -> None:
 
 
 FAULTS = [
-    ('kaifuha', lambda d: d['headrope'].update(length_m=120.0), 'headrope.length_m: found 120 m'),
-    ('kaifuha', lambda d: d['headrope'].update(length_m=150.0), 'a hanging ratio of'),
+    ('kaifuha', lambda d: d['headrope'].update(length_m=120.0), 'headrope.length_m', '120 m'),
+    ('kaifuha', lambda d: d['headrope'].update(length_m=150.0), 'headrope.length_m', 'ratio'),
     (
         'kaifuha',
         lambda d: d['netting']['codend'][0].update(front_circumference_m=900.0),
-        'netting.codend[0]: its front edge is 900 m around (stretched), that of the netting ahead '
-        'of it 180 m',
+        'netting.codend[0]',
+        '900 m',
     ),
     (
         'kaifuha',
         lambda d: d['netting']['codend'][1].update(twine_diameter_m=0.03),
-        'netting.codend[1]: its twine of 30 mm',
+        'netting.codend[1]',
+        '30 mm',
     ),
-    ('kaifuha', lambda d: d['warp'].update(diameter_m=0.016), 'warp.stiffness_n: found 4.1e+07 N'),
-    ('kaifuha', lambda d: d['board'].update(area_m2=20.0), 'board.area_m2: found 20 m²'),
-    ('kaifuha', lambda d: d['board'].update(volume_m3=3.0), 'a density of 867 kg/m³'),
+    ('kaifuha', lambda d: d['warp'].update(diameter_m=0.016), 'warp.stiffness_n', '4.1e+07 N'),
+    ('kaifuha', lambda d: d['board'].update(area_m2=20.0), 'board.area_m2', '20 m²'),
+    ('kaifuha', lambda d: d['board'].update(volume_m3=3.0), 'board.volume_m3', '867 kg/m³'),
     (
         'kaifuha',
         lambda d: d['board']['inertia'].update(zz_kg_m2=9000.0),
-        'board.inertia.zz_kg_m2: found 9000',
+        'board.inertia.zz_kg_m2',
+        '9000',
     ),
     (
         'kaifuha',
         lambda d: d['board']['fastening'].update(warp_m=[-1.0, 0.0, 0.0]),
-        'board.fastening.warp_m: lies behind a bridle',
+        'board.fastening.warp_m',
+        'bridle',
     ),
-    ('krill_800', lambda d: d['headrope'].update(length_m=40.0), 'a ratio of 0.50'),
+    ('krill_800', lambda d: d['headrope'].update(length_m=40.0), 'headrope.length_m', '0.50'),
     (
         'krill_800',
         lambda d: d['netting']['plan']['pieces'][8].update(front_meshes=200),
-        'netting.plan.pieces[8]: its front edge is 80 m around',
+        'netting.plan.pieces[8]',
+        '80 m',
     ),
     (
         'krill_800',
         lambda d: d['netting']['plan']['pieces'][4].update(cut='AB'),
-        'netting.plan.pieces[4]: found 110 to 76 meshes over 25, a difference of 34, where the cut '
-        'AB gives 50',
+        'netting.plan.pieces[4]',
+        '110 to 76',
     ),
     (
         'krill_800',
         lambda d: d['netting']['plan']['pieces'][4].update(twine_diameter_mm=1.0),
-        'Rtex and diameter disagree',
+        'netting.plan.pieces[4]',
+        'Rtex',
     ),
     (
         'krill_800',
         lambda d: d['netting']['plan']['pieces'][1].update(long_meshes=20),
-        'side_upper wing): is 16 m long, the upper wing that it is joined to 20.4 m',
+        'netting.plan (side_upper wing)',
+        '16 m',
     ),
     (
         'krill_800',
@@ -122,43 +128,48 @@ FAULTS = [
                 {'name': 'lower', 'at_board': 'lower', 'at_net': 'lower'},
             ]
         ),
-        'bridles: found upper 60 m, lower 100 m',
+        'bridles',
+        'upper 60 m, lower 100 m',
     ),
     (
         'kaifuha',
         lambda d: d['warp'].update(weight_in_water_n_m=2.8),
-        'warp.weight_in_water_n_m: found 2.8 N/m for a rope as stiff as a wire of 32 mm, expected '
-        'about 31.7 N/m (2.8 kg/m would be 27.5 N/m)',
+        'warp.weight_in_water_n_m',
+        '27.5 N/m',
     ),
     (
         'krill_800',
         lambda d: d['bridle'].update(weight_in_water_n_m=0.8),
-        'bridle.weight_in_water_n_m: found 0.8 N/m for a rope as stiff as a wire of 16 mm',
+        'bridle.weight_in_water_n_m',
+        '0.8 N/m',
     ),
     (
         'kaifuha',
         lambda d: d['warp'].update(weight_in_water_n_m=-5.0),
-        'found -5 N/m, which lifts more than any fibre of 32 mm does',
+        'warp.weight_in_water_n_m',
+        '-5 N/m',
     ),
     (
         'pair_368',
         lambda d: d['warp'].update(weight_in_water_n_m=-5.0),
-        'found -5 N/m, which lifts more than any fibre of 12 mm does',
+        'warp.weight_in_water_n_m',
+        '-5 N/m',
     ),
     (
         'kaifuha',
         lambda d: d['bridle'].update(length_m=2000.0),
-        'found 2000 m, expected at most 1000 m',
+        'bridles (upper)',
+        '2000 m',
     ),
 ]
 
 
-@pytest.mark.parametrize(('name', 'change', 'part'), FAULTS)
+@pytest.mark.parametrize(('name', 'change', 'key', 'number'), FAULTS)
 def test_what_looks_wrong_is_said_with_key_found_and_expected(
-    tmp_path: Path, name: str, change: Any, part: str
+    tmp_path: Path, name: str, change: Any, key: str, number: str
 ) -> None:
-    told = [str(finding) for finding in findings(load_gear(changed(tmp_path, name, change)))]
-    assert any(part in sentence for sentence in told), told
+    told = findings(load_gear(changed(tmp_path, name, change)))
+    assert any(one.key == key and number in one.sentence for one in told), told
 
 
 def test_the_command_prints_draws_and_ends_with_a_code_of_its_own(tmp_path: Path) -> None:
@@ -231,11 +242,11 @@ def test_a_table_becomes_a_plan_that_reads_back_the_same(tmp_path: Path, mark: s
 @pytest.mark.parametrize(
     ('text', 'part'),
     [
-        ('', 'found no line, expected a heading'),
-        ('part,colour\n', "column 'colour', expected one of part, panel"),
-        ('part,part\n', "column 'part' stands twice"),
+        ('', 'plan.csv: '),
+        ('part,colour\n', "column 'colour'"),
+        ('part,part\n', "column 'part'"),
         (GOOD.replace('wing;upper;;800', 'wing;upper;;thick'), "line 3: mesh_mm: found 'thick'"),
-        (GOOD.replace(';PA;\n', ';PA\n', 1), 'line 3 has 9 cells, expected 10'),
+        (GOOD.replace(';PA;\n', ';PA\n', 1), 'line 3: found 9 cells'),
         (GOOD.replace('wing;upper', 'flap;upper'), "line 3: part: found 'flap'"),
         (GOOD.replace('codend;all', 'body;all'), 'found no codend'),
         (GOOD.replace('body;lower', 'body;"lower'), 'found no table'),

@@ -38,15 +38,13 @@ def test_boards_beside_a_pair_are_refused(tmp_path: Path, pair_file: Path) -> No
     def boards(data: Any) -> None:
         data['board'] = load_gear('kaifuha').board.model_dump(mode='json')
 
-    assert 'board: found beside a pair, expected one of them' in complaint(
-        tmp_path, pair_file, boards
-    )
+    assert 'board: found' in complaint(tmp_path, pair_file, boards)
 
 
 @pytest.mark.parametrize(
     ('change', 'expected'),
     [
-        (lambda d: d['ship'].update(block_spacing_m=7.0), 'expected only pair.distance_m'),
+        (lambda d: d['ship'].update(block_spacing_m=7.0), 'ship.block_spacing_m: found 7'),
         (lambda d: d['pair'].update(distance_m=5000.0), 'pair.distance_m: found 5000'),
         (lambda d: d.pop('pair'), 'board: missing'),
     ],

@@ -23,33 +23,31 @@ def test_the_packaged_set_is_the_default_and_a_copy_of_it_says_the_same(tmp_path
 
 
 @pytest.mark.parametrize(
-    ('old', 'new', 'sentence'),
+    ('old', 'new', 'named'),
     [
-        ('rate_hz: 2.0', 'rate_hz: 0', 'winch.rate_hz: found 0, expected a number greater than 0'),
-        ('rate_hz: 2.0', 'period_s: 2.0', 'winch.rate_hz: missing, expected a number (hertz)'),
+        ('rate_hz: 2.0', 'rate_hz: 0', 'winch.rate_hz: found 0'),
+        ('rate_hz: 2.0', 'period_s: 2.0', 'winch.rate_hz: missing'),
         (
             'noise_kn: 1.6',
             'noise_n: 1600',
-            'winch.tension.noise_n: unknown key; '
-            'did you mean winch.tension.noise_kn (kilonewtons)?',
+            'winch.tension.noise_n: ',
         ),
         ('noise_m: 0.39', 'noise_m: -0.39', 'door.spread.noise_m: found -0.39'),
         ('min_range_m: 1.0', 'min_range_m: 500', 'max_range_m: found 400.0'),
-        ('correlation_time_s: 600.0', 'correlation_time_s: 0', 'as correlated_m is given'),
+        ('correlation_time_s: 600.0', 'correlation_time_s: 0', 'correlation_time_s: found 0'),
         ('datum_lat_deg: 60.0', 'datum_lat_deg: 95', 'vessel.datum_lat_deg: found 95'),
     ],
 )
-def test_a_wrong_parameter_is_named(tmp_path: Path, old: str, new: str, sentence: str) -> None:
+def test_a_wrong_parameter_is_named(tmp_path: Path, old: str, new: str, named: str) -> None:
     path = changed(tmp_path, old, new)
     with pytest.raises(InstrumentError) as caught:
         load_instruments(path)
     assert str(caught.value).startswith(f'{path}: ')
-    assert sentence in str(caught.value)
+    assert named in str(caught.value)
 
 
 def test_an_unknown_set_is_refused_with_the_names_there_are() -> None:
-    there = r'there are: default\.yaml, worn\.yaml'
-    with pytest.raises(InstrumentError, match=there):
+    with pytest.raises(InstrumentError, match=r'default\.yaml, worn\.yaml'):
         load_instruments('nosuch')
 
 
@@ -60,7 +58,7 @@ def test_a_file_may_say_only_what_differs_from_a_set_of_the_package(tmp_path: Pa
     assert found.door.spread.noise_m == 2.0
     assert found.vessel == default.vessel
     path.write_text('base: other.yaml\n')
-    with pytest.raises(InstrumentError, match=r"base: found 'other\.yaml', expected the name"):
+    with pytest.raises(InstrumentError, match=r"base: found 'other\.yaml'"):
         load_instruments(path)
 
 
@@ -71,22 +69,22 @@ def test_the_worn_set_differs_from_the_default_in_every_group() -> None:
 
 
 @pytest.mark.parametrize(
-    ('key', 'value', 'sentence'),
+    ('key', 'value', 'named'),
     [
-        ('dropouts_per_hour', 3, 'dropouts_per_hour: found 3 with dropout_s 0, expected both'),
-        ('freeze_s', 3, 'freezes_per_hour: found 0 with freeze_s 3, expected both'),
-        ('outlier_share', 0.1, 'outlier_share: found 0.1 with outlier_m 0, expected both'),
+        ('dropouts_per_hour', 3, 'dropouts_per_hour: found 3 with dropout_s 0'),
+        ('freeze_s', 3, 'freezes_per_hour: found 0 with freeze_s 3'),
+        ('outlier_share', 0.1, 'outlier_share: found 0.1 with outlier_m 0'),
         ('outlier_share', 7, 'outlier_share: found 7'),
     ],
 )
 def test_half_a_description_of_trouble_is_refused(
-    tmp_path: Path, key: str, value: float, sentence: str
+    tmp_path: Path, key: str, value: float, named: str
 ) -> None:
     path = tmp_path / 'mine.yaml'
     path.write_text(f'base: default\nvessel: {{fix: {{{key}: {value}}}}}\n')
     with pytest.raises(InstrumentError) as caught:
         load_instruments(path)
-    assert sentence in str(caught.value)
+    assert named in str(caught.value)
 
 
 def test_overrides_change_what_they_name_and_nothing_else() -> None:

@@ -82,5 +82,5 @@ def test_a_kite_has_no_weight_that_could_be_changed(tmp_path: Path) -> None:
 
 
 def test_what_neither_weighs_nor_lifts_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(GearError, match=r'or lift_area_m2, found 0 of them'):
+    with pytest.raises(GearError, match='lift_area_m2'):
         gear_with(tmp_path, {'rope': 'headrope'})

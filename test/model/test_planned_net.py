@@ -381,11 +381,11 @@ def test_a_plan_that_cannot_be_is_refused(tmp_path: Path, change: Any, part: str
 @pytest.mark.parametrize(
     ('changes', 'part'),
     [
-        ({'netting': {'wing_end_m': 3.0}}, 'netting.wing_end_m: found beside a plan'),
+        ({'netting': {'wing_end_m': 3.0}}, 'netting.wing_end_m: found'),
         ({'hung': [{'name': 'x', 'rope': 'kite', 'buoyancy_n': 1.0}]}, 'hung[0].rope: found kite'),
         (
             {'hung': [{'name': 'x', 'rope': 'headrope'}]},
-            'hung[0]: needs either weight_in_water_n or buoyancy_n',
+            'hung[0]: found 0',
         ),
         (
             {'bridles': [{'name': 'upper', 'at_board': 'upper', 'at_net': 'upper'}]},
@@ -407,7 +407,7 @@ def test_a_rigging_that_cannot_be_is_refused(
 def test_a_rope_that_is_too_short_for_its_bosom_is_refused(tmp_path: Path) -> None:
     data = plan_data()
     data['headrope']['length_m'] = 15.0
-    with pytest.raises(GearError, match=r'headrope\.length_m: found 15, expected more than the'):
+    with pytest.raises(GearError, match=r'headrope\.length_m: found 15'):
         build_model(loaded(tmp_path, data))
 
 
@@ -513,7 +513,7 @@ def test_square_meshes_ahead_of_the_codend_are_a_part_of_its_line(tmp_path: Path
 @pytest.mark.parametrize(
     ('section', 'message'),
     [
-        ('800 mm', 'found square in the upper body, expected T0 or T90: bars of square meshes'),
+        ('800 mm', 'found square in the upper body'),
         ('120 mm', None),
     ],
 )

@@ -96,15 +96,15 @@ def test_a_finer_gear_has_finer_sweeps(model: GearModel) -> None:
     [
         (
             {'bridles': ({'name': 'upper', 'at_board': 'upper', 'at_net': 'upper'},)},
-            r'bridles\[0\].at_board: found upper beside a sweep, expected none',
+            r'bridles\[0\].at_board: found upper',
         ),
         (
             {'bridles': ({'name': 'upper', 'at_net': 'upper'},)},
-            'bridles: found none at_net lower',
+            'bridles: .*at_net lower',
         ),
         (
             {'sweep': None, 'bridles': ({'name': 'upper', 'at_net': 'upper'},)},
-            r'bridles\[0\].at_board: missing, expected upper or lower',
+            r'bridles\[0\].at_board: missing',
         ),
     ],
 )

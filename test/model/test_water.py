@@ -6,7 +6,7 @@ from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
 from trawl_ros.model.numerics import STEP
-from trawl_ros.model.water import ATMOSPHERE, Water
+from trawl_ros.model.water import ATMOSPHERE_PA, Water
 
 
 @pytest.mark.parametrize('gradient', [0.0, 1e-9, 0.02])
@@ -19,7 +19,7 @@ def test_depth_is_the_inverse_of_pressure(gradient: float) -> None:
 def test_pressure_is_the_weight_of_the_column_above() -> None:
     water = Water(density=1024.0, density_gradient=0.03)
     column, _ = quad(lambda depth: water.density_at(-depth) * water.gravity, 0.0, 400.0)
-    assert water.pressure(400.0) == pytest.approx(ATMOSPHERE + column, rel=1e-12)
+    assert water.pressure(400.0) == pytest.approx(ATMOSPHERE_PA + column, rel=1e-12)
 
 
 def test_density_grows_downward_from_its_surface_value() -> None:

@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
-from trawl_ros.simulation.heave import HIGHEST, Heave, irregular_heave, regular_heave
+from trawl_ros.simulation.heave import (
+    HIGHEST_TO_PEAK_FREQUENCY,
+    Heave,
+    irregular_heave,
+    regular_heave,
+)
 
 
 def irregular(seed: int = 1) -> Heave:
@@ -32,7 +37,7 @@ def test_irregular_heave_has_the_significant_height_and_the_peak_period_asked_fo
     peak = frequencies[density.argmax()]
     assert 1 / peak == pytest.approx(8.0, rel=0.08)
     # Nothing above the band, and nothing below half of the peak's frequency.
-    outside = (frequencies > (HIGHEST + 0.1) / 8.0) | (frequencies < 0.4 / 8.0)
+    outside = (frequencies > (HIGHEST_TO_PEAK_FREQUENCY + 0.1) / 8.0) | (frequencies < 0.4 / 8.0)
     assert density[outside].sum() < 0.01 * density.sum()
 
 
@@ -43,7 +48,7 @@ def test_irregular_heave_has_the_shape_of_its_spectrum() -> None:
     ratio = peak / frequencies[inside]
     expected = 5 / 16 * 2.0**2 / peak * ratio**5 * np.exp(-1.25 * ratio**4)
     # What lies above the band was given to what lies in it.
-    expected /= math.exp(-1.25 / HIGHEST**4)
+    expected /= math.exp(-1.25 / HIGHEST_TO_PEAK_FREQUENCY**4)
     assert density[inside] == pytest.approx(expected, abs=0.12 * expected.max())
 
 

@@ -44,7 +44,7 @@ def test_gear_that_would_start_on_the_seabed_is_refused(model: GearModel) -> Non
     simulation = Simulation(model, START)
     lowest = -simulation.now.motion.state.nodes[:, 2].min()
     Simulation(model, START, sea=flat(lowest + 0.1))
-    with pytest.raises(SeabedTouched, match=r'touches the seabed, which is \d+\.\d m deep there'):
+    with pytest.raises(SeabedTouched, match=r'\d+\.\d m'):
         Simulation(model, START, sea=flat(lowest - 0.1))
 
 
@@ -60,7 +60,7 @@ def test_the_lowest_corner_of_a_door_is_what_touches(model: GearModel) -> None:
             seabed=Seabed(0.0, np.array([ahead - 3.0, ahead - 2.0]), np.array([net + 50.0, depth]))
         )
         if touching:
-            with pytest.raises(SeabedTouched, match='the port door touches'):
+            with pytest.raises(SeabedTouched, match='port door'):
                 Simulation(model, START, sea=bank)
         else:
             Simulation(model, START, sea=bank)
@@ -76,7 +76,7 @@ def test_a_tow_ends_where_a_bank_rises_into_the_gear(model: GearModel) -> None:
         for _ in range(200):
             simulation.advance()
 
-    with pytest.raises(SeabedTouched, match=r'the port (door|warp|lower bridle) touches'):
+    with pytest.raises(SeabedTouched, match=r'port (door|warp|lower bridle)'):
         advance()
     assert 15.0 < simulation.now.stamp / 1e9 < 35.0
 

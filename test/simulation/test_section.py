@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.truth import single
 from trawl_ros.simulation.command import Command
-from trawl_ros.simulation.section import section_of, sonar_axes
+from trawl_ros.simulation.reading import section_of, sonar_axes
 from trawl_ros.simulation.simulation import Simulation
 
 

@@ -113,7 +113,5 @@ def test_in_a_turn_the_gear_cuts_the_corner(model: GearModel) -> None:
 def test_it_does_not_start_where_there_is_no_steady_state(model: GearModel) -> None:
     with pytest.raises(NoSteadyState, match=r'warp 500 m at 0\.5 m/s'):
         Simulation(model, Command(500.0, 500.0, 0.5))
-    with pytest.raises(
-        ScenarioError, match=r'straight course, found a rate of turn of 0\.01 rad/s'
-    ):
+    with pytest.raises(ScenarioError, match=r'0\.01 rad/s'):
         Simulation(model, Command(500.0, 500.0, 2.1, 0.01))

@@ -16,8 +16,7 @@ from trawl_ros.diagnosis.refit import Refit, refitted
 from trawl_ros.diagnosis.rules import EMPIRICAL_OVER_PLACEBO, LEAST_BIC
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import LeftOver, Weighed, left_over, weigh
-from trawl_ros.effects.base.term import EmpiricalTerm
-from trawl_ros.effects.empirical.library import dictionary
+from trawl_ros.effects.empirical import EmpiricalTerm, dictionary
 from trawl_ros.solver.predict import Predictor
 
 PLACEBOS = 20

@@ -9,7 +9,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import GearError
 from trawl_ros.effects.base.effect import Effect, Readings, Situation
-from trawl_ros.effects.empirical.library import dictionary
+from trawl_ros.effects.empirical import dictionary
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.gear.records import EffectRecord, GearRecord
 
@@ -32,7 +32,7 @@ class ActiveEffect:
 
 @dataclass(frozen=True)
 class EffectSet:
-    """Effect set; each effect is applied to the result of those before it."""
+    """Effect set; each effect is applied to the result of the one before it."""
 
     effects: tuple[ActiveEffect, ...] = ()
 
@@ -40,42 +40,42 @@ class EffectSet:
         return bool(self.effects)
 
     def apply_to_inputs(self, inputs: FloatArray, at: Situation) -> FloatArray:
-        """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
+        """Return the true warp lengths and speed (3,) where instruments show ``inputs``."""
         for active in self.effects:
             inputs = active.effect.apply_to_inputs(active.values, inputs, at)
         return inputs
 
     def gear(self, model: 'GearModel', at: Situation) -> 'GearModel':
-        """Gear model with all effects applied."""
+        """Return the gear model with all effects applied."""
         for active in self.effects:
             model = active.effect.gear(active.values, model, at)
         return model
 
     def apply_to_sensors(self, readings: Readings, at: Situation) -> Readings:
-        """Apply to sensors: readings with the errors of all effects."""
+        """Return the readings with the errors of all effects."""
         for active in self.effects:
             readings = active.effect.apply_to_sensors(active.values, readings, at)
         return readings
 
     @property
     def on_inputs(self) -> bool:
-        """True if any effect changes what the gear is towed with."""
+        """True if any effect changes the inputs, warp lengths and speed."""
         plain = Effect.apply_to_inputs
         return any(type(active.effect).apply_to_inputs is not plain for active in self.effects)
 
     @property
     def on_sensors(self) -> bool:
-        """True if any effect changes what sensors show."""
+        """True if any effect changes the readings of sensors."""
         plain = Effect.apply_to_sensors
         return any(type(active.effect).apply_to_sensors is not plain for active in self.effects)
 
     def of(self, effect: Effect) -> ActiveEffect:
-        """Effect with its values in this set, neutral where it is absent."""
+        """Return an effect with its values in this set, neutral if it is absent."""
         same = [active for active in self.effects if active.name == effect.name]
         return same[0] if same else ActiveEffect(effect, effect.neutral)
 
     def having(self, active: ActiveEffect) -> 'EffectSet':
-        """Effect set with one effect replaced by name, or added last."""
+        """Return the set with one effect replaced by name, or added last."""
         names = [other.name for other in self.effects]
         if active.name not in names:
             return EffectSet((*self.effects, active))
@@ -83,7 +83,7 @@ class EffectSet:
         return EffectSet((*self.effects[:place], active, *self.effects[place + 1 :]))
 
     def without(self, names: Collection[str]) -> 'EffectSet':
-        """Effect set without the named effects."""
+        """Return the set without the named effects."""
         return EffectSet(tuple(active for active in self.effects if active.name not in names))
 
 
@@ -91,12 +91,13 @@ NO_EFFECTS = EffectSet()
 
 
 def effects_of(gear: GearRecord) -> EffectSet:
-    """Effect set of a gear file.
+    """Return the effect set of a gear file.
 
     Raises
     ------
     GearError
-        If there is no such effect, or a value is missing, of another effect or out of bounds.
+        If an effect is unknown or cannot stand in a gear file, or a value is unknown or out of
+        bounds.
     """
     return EffectSet(tuple(_active(number, record) for number, record in enumerate(gear.effects)))
 
@@ -110,8 +111,8 @@ def _active(number: int, record: EffectRecord) -> ActiveEffect:
     effect = known[record.name]
     if not effect.parameters:
         raise GearError(
-            f'{key}.name: {effect.name} is told from readings and has no values, expected it among '
-            'the faults of a scenario'
+            f'{key}.name: {effect.name} has no values in a gear file, expected it among the faults '
+            'of a scenario'
         )
     names = [parameter.name for parameter in effect.parameters]
     for name in record.values:

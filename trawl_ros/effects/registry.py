@@ -1,4 +1,4 @@
-"""Catalogue of the known effects: those of the folder `catalogue`, and those of other packages.
+"""Catalogue of the known effects: those of `effects/catalogue`, and those of other packages.
 
 Another package adds its own through an entry point of the group `trawl_ros.effects`, whose value is
 an `Effect`.
@@ -6,22 +6,20 @@ an `Effect`.
 
 from collections.abc import Iterator, Mapping
 from functools import cache
-from importlib import import_module
 from importlib.metadata import entry_points
-from pkgutil import walk_packages
 from types import MappingProxyType
 
-import trawl_ros.effects.catalogue
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.effects.base.effect import Effect
+from trawl_ros.effects.catalogue import boards, instruments, net, ropes, water
 
-GROUP = 'trawl_ros.effects'
-"""Of entry points; each has the name of its effect."""
+ENTRY_POINT_GROUP = 'trawl_ros.effects'
+"""Group of entry points; each has the name of its effect."""
 
 
 @cache
 def catalogue() -> Mapping[str, Effect]:
-    """All effects by name, in the order of the names.
+    """Return all effects by name, in the order of the names.
 
     Returns
     -------
@@ -49,21 +47,18 @@ def catalogue() -> Mapping[str, Effect]:
 
 
 def _own() -> Iterator[tuple[str, Effect]]:
-    folder = trawl_ros.effects.catalogue
-    for module in walk_packages(folder.__path__, f'{folder.__name__}.'):
-        own = import_module(module.name)
-        for effect in getattr(own, 'EFFECTS', (getattr(own, 'EFFECT', None),)):
-            if isinstance(effect, Effect):
-                yield module.name, effect
+    for module in (boards, instruments, net, ropes, water):
+        for effect in module.EFFECTS:
+            yield module.__name__, effect
 
 
 def _foreign() -> Iterator[tuple[str, Effect]]:
-    for point in entry_points(group=GROUP):
+    for point in entry_points(group=ENTRY_POINT_GROUP):
         where = f'entry point {point.name} = {point.value}'
         try:
             effect = point.load()
         except (Exception, SystemExit) as reason:
-            # Whatever a foreign module does when it is imported is not this program's fault.
+            # A foreign module may raise anything when it is imported.
             raise TrawlError(f'{where}: cannot be loaded ({reason})') from reason
         if not isinstance(effect, Effect):
             raise TrawlError(f'{where}: found a {type(effect).__name__}, expected an Effect')

@@ -1,7 +1,7 @@
 """Sensor effects on samples: readings with the errors of a gear file's effects.
 
-Truth stays unchanged: counters and log show the numbers at which the effects return the true
-inputs, and sensors show the observables with the effects applied.
+The truth does not change. Counters and log show the inputs for which the effects return the true
+inputs; sensors show the observables with the effects applied.
 """
 
 import numpy as np
@@ -14,13 +14,13 @@ from trawl_ros.records.channels import INPUTS, channel_values, with_channel_valu
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.records.samples import Sample
 
-ROUNDS = 20
-"""Of fixed points; each round leaves a fifth of what is missing, or less."""
+FIXED_POINT_ITERATIONS = 20
+"""Iterations for the indicated inputs; each leaves a fifth of the error or less."""
 
 HOUR_NS = 3600 * 1_000_000_000
 OTHER = {'port': 'starboard', 'starboard': 'port'}
-USUAL = (500.0, 500.0, 2.0)
-"""Warp lengths (m) and speed (m/s) where an instrument does not know the others'."""
+USUAL_INPUTS = (500.0, 500.0, 2.0)
+"""Warp lengths (m) and speed (m/s) in place of those that an instrument does not measure."""
 
 
 def _other_side(name: str) -> str:
@@ -34,9 +34,9 @@ class SensorEffects:
     Parameters
     ----------
     effect_set
-        The effects; without any, samples pass unchanged.
+        Effects of the gear; if there are none, samples pass unchanged.
     water
-        Turns pressure into depth and back.
+        Density profile that converts pressure into depth and back.
     """
 
     def __init__(self, effect_set: EffectSet, water: Water) -> None:
@@ -51,11 +51,11 @@ class SensorEffects:
             return sample
         if self._first is None or sample.stamp < self._first:
             self._first = sample.stamp
-        at = Situation(USUAL, hours=(sample.stamp - self._first) / HOUR_NS)
+        at = Situation(USUAL_INPUTS, hours=(sample.stamp - self._first) / HOUR_NS)
         true = channel_values(sample, self._water.depth)
         shown: Readings = {}
         if not true.keys().isdisjoint(INPUTS):
-            inputs = [true.get(*usual) for usual in zip(INPUTS, USUAL, strict=True)]
+            inputs = [true.get(*usual) for usual in zip(INPUTS, USUAL_INPUTS, strict=True)]
             shown = dict(
                 zip(INPUTS, map(float, self._instrument(np.array(inputs), at)), strict=True)
             )
@@ -65,8 +65,10 @@ class SensorEffects:
         return with_channel_values(sample, changed, self._water.pressure)
 
     def _sensors(self, known: Readings, at: Situation) -> Readings:
-        """Readings of sensors; each depends on its own observable, and on that of the other side as
-        it was last, or is the same there before that is known.
+        """Return the readings of sensors.
+
+        Each depends on its own observable and on the last one of the other side; before that is
+        known, both sides are taken to be the same.
         """
         self._last.update(known)
         both = {_other_side(name): value for name, value in known.items()}
@@ -74,8 +76,8 @@ class SensorEffects:
         return self._effect_set.apply_to_sensors(true, at)
 
     def _instrument(self, true: FloatArray, at: Situation) -> FloatArray:
-        """Indicated inputs at which the gear is towed with ``true``, by fixed-point iteration."""
+        """Return the indicated inputs whose true inputs are ``true``, by fixed-point iteration."""
         shown = true
-        for _ in range(ROUNDS):
+        for _ in range(FIXED_POINT_ITERATIONS):
             shown = shown + true - self._effect_set.apply_to_inputs(shown, at)
         return shown

@@ -12,8 +12,8 @@ from trawl_ros.core.schema import Record
 from trawl_ros.gear.numbers import Coefficient, Degrees, NotNegative, Positive, Vector
 from trawl_ros.records.coefficients import COEFFICIENTS
 
-SEA = 1025.0
-"""Density (kg/m³) of the water that a turning plate carries along."""
+SEA_DENSITY_KG_M3 = 1025.0
+"""Density of the water in the added mass of a plate."""
 
 
 class StartRecord(Record):
@@ -28,12 +28,12 @@ class StartRecord(Record):
     def _twelve(self) -> 'StartRecord':
         for name in ('start', 'std', 'low', 'high'):
             if len(getattr(self, name)) != 12:
-                raise ValueError(f'{name}: needs 12 numbers, found {len(getattr(self, name))}')
+                raise ValueError(f'{name}: found {len(getattr(self, name))} numbers, expected 12')
         for i, (low, start, high) in enumerate(zip(self.low, self.start, self.high, strict=True)):
             if not low < high or not low <= start <= high:
                 raise ValueError(
-                    f'number {i + 1}: needs low <= start <= high and low < high, '
-                    f'found {low}, {start}, {high}'
+                    f'number {i + 1}: found low {low}, start {start}, high {high}, expected '
+                    'low <= start <= high and low < high'
                 )
         return self
 
@@ -55,7 +55,7 @@ class CoefficientsRecord(Record):
     c6: Coefficient
 
     def array(self) -> NDArray[np.float64]:
-        """Values (12,), in the order of `COEFFICIENTS`."""
+        """Return the values (12,) in the order of `COEFFICIENTS`."""
         return np.array([getattr(self, name) for name in COEFFICIENTS])
 
 
@@ -71,7 +71,7 @@ class InertiaRecord(Record):
 
 
 class FasteningRecord(Record):
-    """Fastening points in the outward board frame, origin in the centre of gravity."""
+    """Fastening points in the outward board frame, whose origin is the centre of gravity."""
 
     warp_m: Vector
     upper_bridle_m: Vector
@@ -79,7 +79,7 @@ class FasteningRecord(Record):
 
 
 class InstallationRecord(Record):
-    """Installation angles: turns of the board about its z, y, x axes against its rigging."""
+    """Installation angles: rotations of the board about its z, y, x axes against its rigging."""
 
     epsilon_deg: Degrees = 0.0
     zeta_deg: Degrees = 0.0
@@ -89,7 +89,7 @@ class InstallationRecord(Record):
 class PolarPointRecord(Record):
     """Lift, drag and centre of pressure of a board at an angle of attack.
 
-    ``ahead_chords`` is how far the centre of pressure lies ahead of the centre of gravity, in
+    ``ahead_chords`` is the distance of the centre of pressure ahead of the centre of gravity, in
     chords.
     """
 
@@ -104,7 +104,7 @@ class TiltPointRecord(Record):
 
     ``tilt_deg`` is the heel, positive with the outward normal up (upper edge inward), or the trim,
     positive with the nose up. ``lift_factor`` multiplies the horizontal lift of the upright board;
-    ``upward`` is the whole vertical force coefficient C_Z, upward, on the board's area.
+    ``upward`` is the whole upward force coefficient C_Z on the board's area.
     """
 
     tilt_deg: Annotated[float, Field(ge=-45, le=45)]
@@ -119,9 +119,7 @@ def _tilts_rise(**tables: tuple[TiltPointRecord, ...]) -> None:
     for name, points in tables.items():
         tilts = [point.tilt_deg for point in points]
         if tilts and (any(b <= a for a, b in pairwise(tilts)) or not tilts[0] <= 0 <= tilts[-1]):
-            raise ValueError(
-                f'{name}: found tilt_deg {tilts}, expected rising angles around 0, or 0 at an end'
-            )
+            raise ValueError(f'{name}: found tilt_deg {tilts}, expected rising angles that span 0')
 
 
 def _rising(points: tuple[PolarPointRecord, ...]) -> None:
@@ -129,13 +127,13 @@ def _rising(points: tuple[PolarPointRecord, ...]) -> None:
     if any(b <= a for a, b in pairwise(attacks)):
         raise ValueError(f'points: angles must rise, found {attacks}')
     if len({point.ahead_chords is None for point in points}) > 1:
-        raise ValueError('points: found ahead_chords at some angles, expected it at all or at none')
+        raise ValueError('points: found ahead_chords at some angles, expected it at all or none')
 
 
 class DoorRecord(Record):
-    """A door of the catalogue: published lift and drag, with their source.
+    """Door of the catalogue: published lift and drag, with their source.
 
-    ``heel`` and ``trim`` say how they change in a tilted board, where that was measured.
+    ``heel`` and ``trim`` are measured changes of the loads of a tilted board.
     """
 
     name: str
@@ -153,11 +151,11 @@ class DoorRecord(Record):
 
 
 class BoardLawRecord(Record):
-    """Law of a board in place of the straight lines of eq. 14, which are then added to it.
+    """Law of a board in place of eq. 14, whose straight lines are then added to it.
 
-    ``table`` takes the points of a flume tank, or those of a ``door`` of the catalogue; ``foil``
-    makes them for a cambered board that stalls at ``stall_deg`` with the lift ``max_lift``. A table
-    may add ``heel`` and ``trim``, which replace those of its door.
+    A ``table`` has points of a flume tank, or those of a ``door`` of the catalogue. A ``foil``
+    computes them for a cambered board that stalls at ``stall_deg`` with the lift ``max_lift``. A
+    table may have ``heel`` and ``trim``, which replace those of its door.
     """
 
     kind: Literal['table', 'foil']
@@ -174,23 +172,23 @@ class BoardLawRecord(Record):
     def _whole(self) -> 'BoardLawRecord':
         given = bool(self.points) + (self.door is not None)
         if self.kind == 'table' and given != 1:
-            raise ValueError(f'a table needs either door or points, found {given} of them')
+            raise ValueError(f'found {given} of door and points, expected one of them for a table')
         if self.kind == 'table' and self.door is None and len(self.points) < 2:
-            raise ValueError(f'points: a table needs at least 2, found {len(self.points)}')
+            raise ValueError(f'points: found {len(self.points)}, expected at least 2 for a table')
         if self.kind == 'foil' and (given or self.heel or self.trim):
-            raise ValueError('a foil makes its points itself, found door, points, heel or trim')
+            raise ValueError('found door, points, heel or trim, expected none of them for a foil')
         if self.kind == 'foil' and (self.max_lift is None or self.stall_deg is None):
-            raise ValueError('a foil needs max_lift and stall_deg, found none of one of them')
+            raise ValueError('max_lift or stall_deg: missing, expected both for a foil')
         _rising(self.points)
         _tilts_rise(heel=self.heel, trim=self.trim)
         return self
 
 
 class BoardRecord(Record):
-    """An otter board; both sides are the same board, mirrored.
+    """Otter board; the starboard board is the mirror image of the port board.
 
-    Inertia and added mass that are not given are those of a plate of this span and chord; with a
-    ``law`` the coefficients of eq. 14 are corrections to it, zero unless given.
+    Inertia and added mass are those of a plate of this span and chord by default. With a ``law``
+    the coefficients of eq. 14 are corrections to it, zero by default.
     """
 
     mass_kg: Positive
@@ -228,15 +226,15 @@ def _refuse_keys_of_0_1(given: dict[str, object]) -> None:
     found = [key for key in ('force_axes', 'moment_signs', 'slip_sign') if key in given]
     if found:
         raise ValueError(
-            f'found {", ".join(found)} of a gear file of 0.1, expected none: loads act in one '
-            'frame now, aft, outward and down (docs/from_0_1.md). Delete these keys and run '
-            'trawl trim; or, to keep what force_axes: flow, moment_signs: [-1, 1, 1] and '
-            'slip_sign: -1 did, reverse the signs of c3, b5, a6 and c6'
+            f'found {", ".join(found)} of a gear file of 0.1, expected none: loads now act in one '
+            'frame, aft, outward and down (docs/from_0_1.md). Delete these keys and run '
+            'trawl trim. To keep the loads of force_axes: flow, moment_signs: [-1, 1, 1] and '
+            'slip_sign: -1, reverse the signs of c3, b5, a6 and c6'
         )
 
 
 def plate_inertia(mass: float, volume: float, span: float, chord: float) -> dict[str, float]:
-    """Inertia (kg m²) of an even plate, as thick as its volume (m³) makes it."""
+    """Return the inertia (kg m²) of a plate whose thickness follows from its volume (m³)."""
     thick = volume / (span * chord)
     return {
         'xx_kg_m2': mass * (span**2 + thick**2) / 12,
@@ -249,9 +247,12 @@ def plate_inertia(mass: float, volume: float, span: float, chord: float) -> dict
 
 
 def plate_added_mass(span: float, chord: float) -> float:
-    """Added mass (kg) of a rectangular plate across its face: strips, corrected after Pabst."""
+    """Return the added mass (kg) of a rectangular plate normal to its face.
+
+    It is that of strips, with the correction of Pabst for the aspect ratio.
+    """
     aspect = max(span, chord) / min(span, chord)
-    strips = SEA * pi / 4 * min(span, chord) ** 2 * max(span, chord)
+    strips = SEA_DENSITY_KG_M3 * pi / 4 * min(span, chord) ** 2 * max(span, chord)
     return strips * aspect / sqrt(1 + aspect**2) * (1 - 0.425 * aspect / (1 + aspect**2))
 
 
@@ -261,4 +262,4 @@ CORRECTIONS = StartRecord(
     low=(-2.0, -0.3, -2.0, -1.0, -2.0, -0.5, -2.0, -0.5, -1.0, -0.5, -2.0, -0.5),
     high=(2.0, 0.3, 2.0, 1.0, 2.0, 0.5, 2.0, 0.5, 2.0, 0.5, 2.0, 0.5),
 )
-"""Prior of the corrections to a board's law, where the gear file states none; assumed."""
+"""Prior of the corrections to a board's law if the gear file has none; assumed."""

@@ -1,4 +1,4 @@
-"""Catch in the codend: its mass, and the body that it makes of the codend's end."""
+"""Catch in the codend: its mass, and the shape of the full codend."""
 
 from dataclasses import dataclass
 from math import atan, pi, sin, sqrt
@@ -10,19 +10,18 @@ from trawl_ros.core.schema import Record
 from trawl_ros.gear.numbers import NotNegative
 
 OPEN_SHARE = sin(atan(sqrt(2.0)))
-"""Circumference over that of stretched netting where diamond meshes are blown open.
+"""Circumference of diamond meshes under pressure over that of stretched netting.
 
-A pressure p in a tube of radius r pulls with p r around and p r / 2 along, and bars at an angle θ
-to the axis bear tan² θ times as much around as along. So θ is 54.7°, as in braided hoses.
+A pressure p in a tube of radius r causes tensions p r around and p r / 2 along it. Bars at an angle
+θ to the axis bear tan² θ times as much around as along. So θ is 54.7°, as in braided hoses.
 """
 
 
 class CatchRecord(Record):
     """Catch in the codend.
 
-    ``density_kg_m3`` is that of fish, ``bulk_kg_m3`` the fish in a cubic metre of the full codend,
-    the rest of which is water. The pressure of the flow on the codend around it is ½ ρ C_D v² with
-    ``drag_coefficient``, so that this is C_D of the catch on its cross-section.
+    ``density_kg_m3`` is that of fish, ``bulk_kg_m3`` the mass of fish in a cubic metre of the full
+    codend; the remainder is water. ``drag_coefficient`` is C_D of the catch on its cross-section.
     """
 
     mass_kg: Annotated[float, Field(gt=0, le=1e6)]
@@ -42,14 +41,14 @@ class CatchRecord(Record):
 
 @dataclass(frozen=True)
 class CatchBody:
-    """Body of a catch: a ball, or a cylinder with round ends as wide as the netting opens.
+    """Body of a catch: a ball, or a cylinder with round ends as wide as the open netting.
 
     Attributes
     ----------
     radius, length
-        Of the body, m.
+        Radius and length of the body, m.
     volume
-        Of fish and the water between them, m³.
+        Volume of fish and the water between them, m³.
     """
 
     radius: float
@@ -58,14 +57,14 @@ class CatchBody:
 
     @property
     def cross_section(self) -> float:
-        """Area across the flow, m²."""
+        """Area normal to the flow, m²."""
         return pi * self.radius**2
 
 
 def catch_body(catch: CatchRecord, circumference: float, *, square: bool = False) -> CatchBody:
-    """Body of a catch in netting of this stretched circumference (m).
+    """Return the body of a catch in netting of this stretched circumference (m).
 
-    Bars of square meshes lie around already and do not open further.
+    Square meshes do not open further: their bars lie around already.
     """
     volume = catch.mass_kg / catch.bulk_kg_m3
     widest = (1.0 if square else OPEN_SHARE) * circumference / (2.0 * pi)

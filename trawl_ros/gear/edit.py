@@ -1,4 +1,4 @@
-"""Edits of a gear file's text: values changed at their places, comments and order kept."""
+"""Edits of a gear file's text that change values and keep comments and order."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -15,19 +15,18 @@ from trawl_ros.gear.rigging import ENDS
 Key = tuple[str | int, ...]
 """Keys and indices from the top of the file to a value."""
 
-DIGITS = 3
-"""Decimals that are written: millimetres, and thousandths of a newton."""
+WRITTEN_DECIMALS = 3
+"""Decimals of written numbers: millimetres, and thousandths of a newton."""
 
-FIGURES = '.12g'
-"""Format of numbers in the file, in which none of those decimals is lost."""
+NUMBER_FORMAT = '.12g'
+"""Format of numbers in the file, which keeps these decimals."""
 
-
-CLOSE = 0.01
-"""Rounding that numbers may have in the file."""
+ROUNDING_TOLERANCE = 0.01
+"""Greatest difference between a number in the file and its value."""
 
 
 def changed_values(old: GearRecord, new: GearRecord) -> dict[Key, float]:
-    """Numbers in which two gears differ, by their keys.
+    """Return the numbers in which two gears differ, by their keys.
 
     Raises
     ------
@@ -51,15 +50,15 @@ def _differences(key: Key, old: object, new: object) -> Iterator[tuple[Key, floa
             yield from _differences((*key, number), *pair)
     elif old != new:
         if not isinstance(new, float):
-            raise GearError(f'{_dotted(key)}: found {new!r} as its change, expected a number')
-        yield key, round(new, DIGITS)
+            raise GearError(f'{_dotted(key)}: found the new value {new!r}, expected a number')
+        yield key, round(new, WRITTEN_DECIMALS)
 
 
 def edited(text: str, values: Mapping[Key, float]) -> str:
-    """Text of a gear file with some of its numbers changed.
+    """Return the text of a gear file with some of its numbers changed.
 
-    A number that the file leaves out is put beside the others of its record; one of the bridles,
-    where the file has no list of them, into such a list at its end.
+    A number that the file does not have is added to its record. A number of the bridles is added
+    in a list of bridles at the end if the file has none.
 
     Raises
     ------
@@ -80,20 +79,20 @@ def edited(text: str, values: Mapping[Key, float]) -> str:
         if missing == 'bridles':
             bridles[int(key[1])] = value
         elif missing or not isinstance(record, yaml.MappingNode | yaml.SequenceNode):
-            raise GearError(f'{_dotted(key)}: missing, expected it in the file')
+            raise GearError(f'{_dotted(key)}: missing, expected this key in the file')
         elif (node := _child(record, last)) is not None:
-            pieces.append((node.start_mark.index, node.end_mark.index, f'{value:{FIGURES}}'))
+            pieces.append((node.start_mark.index, node.end_mark.index, f'{value:{NUMBER_FORMAT}}'))
         elif isinstance(record, yaml.MappingNode):
             pieces.append(_added(record, str(last), value))
     for start, end, new in sorted(pieces, reverse=True):
         text = text[:start] + new + text[end:]
     if bridles:
-        # Those that every gear without a list has; behind a sweep none has a place at the board.
+        # The default bridles of a gear; behind a sweep they have no fastening point at the board.
         swept = _child(root, 'sweep') is not None
         rows = []
         for number, name in enumerate(ENDS):
             row = f'name: {name}, ' + ('' if swept else f'at_board: {name}, ') + f'at_net: {name}'
-            length = f', length_m: {bridles[number]:{FIGURES}}' if number in bridles else ''
+            length = f', length_m: {bridles[number]:{NUMBER_FORMAT}}' if number in bridles else ''
             rows.append(f'  - {{{row}{length}}}')
         text = '\n'.join([text.rstrip('\n'), '', 'bridles:', *rows, ''])
     return text
@@ -108,14 +107,14 @@ def _child(node: yaml.Node, part: str | int) -> yaml.Node | None:
 
 
 def _added(node: yaml.MappingNode, name: str, value: float) -> tuple[int, int, str]:
-    """Insertion of a key ahead of the first one of its record."""
+    """Return the insertion of a key ahead of the first key of its record."""
     first = node.value[0][0].start_mark
     ending = ', ' if node.flow_style else '\n' + ' ' * first.column
-    return first.index, first.index, f'{name}: {value:{FIGURES}}{ending}'
+    return first.index, first.index, f'{name}: {value:{NUMBER_FORMAT}}{ending}'
 
 
 def _named(key: Key) -> Key:
-    """Key without the coordinate of a point at its end."""
+    """Return a key without the coordinate of a point at its end."""
     return key[:-1] if isinstance(key[-1], int) else key
 
 
@@ -124,22 +123,21 @@ def _dotted(key: Key) -> str:
 
 
 def write_changed(source: str | Path, out: Path, gear: GearRecord) -> None:
-    """Write a copy of a gear file in which the numbers of a changed gear stand.
+    """Write a copy of a gear file with the numbers of a changed gear.
 
     Parameters
     ----------
     source
-        A file, or the name of a gear that comes with the package.
+        A file, or the name of a gear in the package.
     out
         New file.
     gear
-        The changed gear.
+        Changed gear.
 
     Raises
     ------
     GearError
-        If ``out`` is there already, or what would be written does not load as that gear. Then no
-        file is left.
+        If ``out`` exists, or the new file would not load as that gear. Then no file is written.
     """
     require_new(out)
     path = packaged(source, 'gear', GearError)
@@ -155,19 +153,20 @@ def write_changed(source: str | Path, out: Path, gear: GearRecord) -> None:
         except GearError as reason:
             raise GearError(str(reason).replace(str(draft), str(out))) from reason
         for key, value in values.items():
-            if abs(there.get(key, float('inf')) - value) > CLOSE:
+            if abs(there.get(key, float('inf')) - value) > ROUNDING_TOLERANCE:
                 raise GearError(
-                    f'{out}: {_dotted(key)} cannot be written beside what the file says'
+                    f'{out}: {_dotted(key)}: found no place for it in the text of the gear file, '
+                    'expected a key that can be changed there; set it by hand'
                 )
 
 
 def require_new(path: Path) -> None:
-    """Refuse a file that is there already.
+    """Check that a path is free.
 
     Raises
     ------
     GearError
-        Naming it.
+        If there is a file or a link.
     """
     if path.exists() or path.is_symlink():
         raise GearError(f'{path}: found a file, expected a new name: none is written over')

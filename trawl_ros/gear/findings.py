@@ -1,4 +1,4 @@
-"""Findings in a gear file: what looks wrong, by arithmetic, before anything is built or solved."""
+"""Findings in a gear file: values that look wrong, by arithmetic, without building the model."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -9,25 +9,24 @@ from trawl_ros.gear.boards import plate_inertia
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord, cut_slope
 from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.gear.ropes import RopeRecord
+from trawl_ros.gear.rigging import RopeRecord
 
-JOIN = 0.15
-"""Part by which the stretched circumferences of two joined edges may differ: what a net maker
-gathers."""
+JOIN_TOLERANCE = 0.15
+"""Greatest relative difference of two joined edges; a net maker can gather this much netting."""
 
-CUT = 0.15
-"""Part of the meshes lost along a piece by which its counts may differ from its cutting rate."""
+CUT_TOLERANCE = 0.15
+"""Greatest difference of a piece's counts from its cutting rate, as a part of the lost meshes."""
 
 LONGEST_BRIDLE_M = 1000.0
-"""m; bridles and sweeps together are some hundred metres long at most."""
+"""Greatest length of a bridle; with sweeps they are some hundred metres long."""
 
-STEEL_EA = 4.0e10
-"""EA of steel wire rope over its squared diameter, Pa."""
+STEEL_EA_PA = 4.0e10
+"""EA of steel wire rope over its squared diameter."""
 
 
 @dataclass(frozen=True)
 class GearFinding:
-    """Finding in a gear file: the key it is about, and what was found and expected there."""
+    """Finding in a gear file: a key, with its found and expected values in a sentence."""
 
     key: str
     sentence: str
@@ -37,17 +36,17 @@ class GearFinding:
 
 
 def findings(gear: GearRecord) -> tuple[GearFinding, ...]:
-    """Find what looks wrong in a gear file.
+    """Find values that look wrong in a gear file.
 
     Parameters
     ----------
     gear
-        As it was loaded: what could not be at all was refused then.
+        Loaded gear; loading has refused impossible values already.
 
     Returns
     -------
     tuple of GearFinding
-        In the order of the file; none where nothing looks wrong.
+        Findings in the order of the file; empty if there are none.
     """
     return tuple(finding for part in (_ropes, _net, _rigging, _board) for finding in part(gear))
 
@@ -55,7 +54,7 @@ def findings(gear: GearRecord) -> tuple[GearFinding, ...]:
 def _ropes(gear: GearRecord) -> Iterator[GearFinding]:
     for key in ('warp', 'bridle'):
         rope = getattr(gear, key)
-        steel = STEEL_EA * rope.diameter_m**2
+        steel = STEEL_EA_PA * rope.diameter_m**2
         if rope.weight_in_water_n_m > 0.5 * 4e4 * rope.diameter_m**2 and not (
             0.4 * steel < rope.stiffness_n < 2.5 * steel
         ):
@@ -70,19 +69,19 @@ def _ropes(gear: GearRecord) -> Iterator[GearFinding]:
         if mass > 6500.0 * pi / 4 * rope.diameter_m**2:
             yield GearFinding(
                 f'{key}.weight_in_water_n_m',
-                f'found {rope.weight_in_water_n_m:g} N/m, more than solid steel of '
-                f'{1e3 * rope.diameter_m:.3g} mm across has in a wire',
+                f'found {rope.weight_in_water_n_m:g} N/m, more than a wire of '
+                f'{1e3 * rope.diameter_m:.3g} mm can weigh',
             )
         elif mass < 400.0 * pi / 4 * rope.diameter_m**2:
             yield GearFinding(
                 f'{key}.weight_in_water_n_m',
-                f'found {rope.weight_in_water_n_m:g} N/m, which lifts more than any fibre of '
-                f'{1e3 * rope.diameter_m:.3g} mm does',
+                f'found {rope.weight_in_water_n_m:g} N/m, more buoyancy than a fibre rope of '
+                f'{1e3 * rope.diameter_m:.3g} mm can have',
             )
 
 
 def _light_wire(key: str, rope: RopeRecord) -> Iterator[GearFinding]:
-    """Find the weight of a rope that is as stiff as a wire and much lighter."""
+    """Find a rope with the stiffness of a wire that is much lighter."""
     usual = 3.1e4 * rope.diameter_m**2
     found = rope.weight_in_water_n_m
     if found < 0.5 * usual:
@@ -115,7 +114,7 @@ def _sections(gear: GearRecord, net: NettingRecord) -> Iterator[GearFinding]:
         yield from _twine(key, section.twine_diameter_m, section.mesh_m)
     mouth = net.body[0].front_circumference_m
     if net.wing_edge_hanging is not None:
-        # Wings are a twenty-fourth of the mouth long and leave two thirds of it to the bosoms.
+        # Wings are 1/24 of the mouth long; both bosoms together take two thirds of it.
         edge, bosom = net.wing_edge_hanging * mouth / 24, mouth / 3
         for key in ('headrope', 'footrope'):
             length = getattr(gear, key).length_m
@@ -123,11 +122,10 @@ def _sections(gear: GearRecord, net: NettingRecord) -> Iterator[GearFinding]:
             if left <= 0.0:
                 yield GearFinding(
                     f'{key}.length_m',
-                    f'found {length:g} m, expected more than the {2 * edge:.4g} m of wing edges '
-                    'that hang on it',
+                    f'found {length:g} m, expected more than its wing edges of {2 * edge:.4g} m',
                 )
             else:
-                yield from _hanging(f'{key}.length_m', left / bosom, f'{left:.4g} m on its bosom')
+                yield from _hanging(f'{key}.length_m', left / bosom, f'{left:.4g} m for its bosom')
 
 
 def _hanging(key: str, ratio: float, rope: str) -> Iterator[GearFinding]:
@@ -138,11 +136,11 @@ def _hanging(key: str, ratio: float, rope: str) -> Iterator[GearFinding]:
 
 
 def _join(key: str, ahead: float, behind: float) -> Iterator[GearFinding]:
-    if not 1 / (1 + JOIN) <= behind / ahead <= 1 + JOIN:
+    if not 1 / (1 + JOIN_TOLERANCE) <= behind / ahead <= 1 + JOIN_TOLERANCE:
         yield GearFinding(
             key,
-            f'its front edge is {behind:.4g} m around (stretched), that of the netting ahead of it '
-            f'{ahead:.4g} m, expected them within {100 * JOIN:.0f} % of each other',
+            f'found a front edge of {behind:.4g} m (stretched) behind an edge of {ahead:.4g} m, '
+            f'expected them within {100 * JOIN_TOLERANCE:.0f} % of each other',
         )
 
 
@@ -151,8 +149,8 @@ def _twine(key: str, diameter: float, mesh: float) -> Iterator[GearFinding]:
     if not 5e-4 <= ratio <= 0.25:
         yield GearFinding(
             key,
-            f'its twine of {1e3 * diameter:.3g} mm is {ratio:.2g} of a bar of '
-            f'{500 * mesh:.4g} mm, expected 0.0005 to 0.25',
+            f'found twine of {1e3 * diameter:.3g} mm, {ratio:.2g} of a bar of {500 * mesh:.4g} mm, '
+            'expected 0.0005 to 0.25',
         )
 
 
@@ -167,16 +165,15 @@ def _plan(gear: GearRecord, plan: NetPlanRecord) -> Iterator[GearFinding]:
         if not 0.35 <= filled <= 1.0:
             yield GearFinding(
                 key,
-                f'its fibres would fill {filled:.2f} of a twine of '
-                f'{1e3 * piece.twine.diameter:.3g} mm, expected 0.35 to 1: Rtex and diameter '
-                'disagree',
+                f'found Rtex and diameter that disagree: fibres fill {filled:.2f} of a twine of '
+                f'{1e3 * piece.twine.diameter:.3g} mm, expected 0.35 to 1',
             )
     rows = [pieces for part in ('body', 'codend') for _, pieces in plan.sections(part)]
     for ahead, behind in pairwise(rows):
         if (ahead[0].orientation == 'square') != (behind[0].orientation == 'square'):
-            continue  # joined as the net maker counts, stretched meshes to open ones
+            continue  # stretched meshes are joined to open ones by count
         if ahead[0].orientation == 'ropes':
-            continue  # ropes spread or draw together from the frame to the netting
+            continue  # ropes may converge or diverge from the frame to the netting
         key = number[id(behind[0])]
         if {p.panel for p in ahead} == {p.panel for p in behind}:
             back = {p.panel: p.widths[1] for p in ahead}
@@ -197,8 +194,8 @@ def _plan(gear: GearRecord, plan: NetPlanRecord) -> Iterator[GearFinding]:
         if long[side] and abs(long[side] - long[panel]) > 0.05 * long[panel]:
             yield GearFinding(
                 f'netting.plan ({side} wing)',
-                f'is {long[side]:.4g} m long, the {panel} wing that it is joined to '
-                f'{long[panel]:.4g} m, expected them alike',
+                f'found {long[side]:.4g} m, expected the length of the {panel} wing, '
+                f'{long[panel]:.4g} m',
             )
 
 
@@ -208,12 +205,12 @@ def _cut(key: str, piece: PieceRecord) -> Iterator[GearFinding]:
     edges = 1 if piece.part == 'wing' else 2
     expected = edges * cut_slope(piece.cut) * piece.long_meshes
     found = abs(piece.front_meshes - piece.back_meshes)
-    if abs(found - expected) > max(CUT * expected, 2.0):
+    if abs(found - expected) > max(CUT_TOLERANCE * expected, 2.0):
         yield GearFinding(
             key,
             f'found {piece.front_meshes:g} to {piece.back_meshes:g} meshes over '
-            f'{piece.long_meshes:g}, a difference of {found:g}, where the cut {piece.cut} gives '
-            f'{expected:.3g}',
+            f'{piece.long_meshes:g}, a difference of {found:g}, expected {expected:.3g} from the '
+            f'cut {piece.cut}',
         )
 
 
@@ -223,7 +220,7 @@ def _edges(rope: str, length: float, plan: NetPlanRecord) -> Iterator[GearFindin
     if netting['edge'] and not 0.7 <= left / netting['edge'] <= 1.05:
         yield GearFinding(
             f'{rope}.length_m',
-            f'found {length:g} m, which leaves {left:.4g} m to {netting["edge"]:.4g} m of wing '
+            f'found {length:g} m, which leaves {left:.4g} m for {netting["edge"]:.4g} m of wing '
             f'edges, a ratio of {left / netting["edge"]:.2f}, expected 0.7 to 1.05',
         )
 
@@ -233,7 +230,7 @@ def _rigging(gear: GearRecord) -> Iterator[GearFinding]:
     for name, length in long.items():
         if length > LONGEST_BRIDLE_M:
             yield GearFinding(
-                f'{name}.length_m' if name == 'bridle' else f'bridles ({name})',
+                f'bridles ({name})',
                 f'found {length:g} m, expected at most {LONGEST_BRIDLE_M:g} m',
             )
     if max(long.values()) > 1.15 * min(long.values()):
@@ -242,7 +239,7 @@ def _rigging(gear: GearRecord) -> Iterator[GearFinding]:
     sinks = gear.clump.weight_in_water_n > 0.0 or any(item.sinks for item in gear.hung)
     if not sinks and gear.footrope.weight_in_water_n_m <= 0.0:
         yield GearFinding(
-            'hung', 'found no weight on net or bridles, which opens the mouth downward'
+            'hung', 'found no weight on net or bridles, expected one that opens the mouth downward'
         )
 
 
@@ -254,7 +251,7 @@ def _board(gear: GearRecord) -> Iterator[GearFinding]:
     if not 0.7 <= board.area_m2 / plate <= 1.15:
         yield GearFinding(
             'board.area_m2',
-            f'found {board.area_m2:g} m², where span times chord is {plate:.4g} m²',
+            f'found {board.area_m2:g} m², expected about span times chord, {plate:.4g} m²',
         )
     density = board.mass_kg / board.volume_m3
     if not 1025.0 < density <= 8000.0:
@@ -269,7 +266,7 @@ def _board(gear: GearRecord) -> Iterator[GearFinding]:
         if not 1 / 3 <= found / usual[name] <= 3:
             yield GearFinding(
                 f'board.inertia.{name}',
-                f'found {found:g}, where an even plate has {usual[name]:.4g}',
+                f'found {found:g}, expected about that of a plate, {usual[name]:.4g}',
             )
     points = board.fastening
     for name in ('warp_m', 'upper_bridle_m', 'lower_bridle_m'):
@@ -277,12 +274,14 @@ def _board(gear: GearRecord) -> Iterator[GearFinding]:
         if abs(x) > 0.75 * board.chord_m or abs(z) > 0.75 * board.span_m:
             yield GearFinding(
                 f'board.fastening.{name}',
-                f'found {x:g} m ahead and {z:g} m up, beyond the board and half as much again '
-                f'({board.chord_m:g} by {board.span_m:g} m)',
+                f'found {x:g} m ahead and {z:g} m up, expected a point near the board of '
+                f'{board.chord_m:g} by {board.span_m:g} m',
             )
     if points.upper_bridle_m[2] <= points.lower_bridle_m[2]:
         yield GearFinding(
-            'board.fastening', 'the upper bridle is shackled below the lower one, expected above'
+            'board.fastening', 'found the upper bridle below the lower one, expected it above'
         )
     if points.warp_m[0] <= max(points.upper_bridle_m[0], points.lower_bridle_m[0]):
-        yield GearFinding('board.fastening.warp_m', 'lies behind a bridle, expected ahead of both')
+        yield GearFinding(
+            'board.fastening.warp_m', 'found it behind a bridle, expected it ahead of both'
+        )

@@ -1,4 +1,4 @@
-"""Loading a gear file."""
+"""Loading of a gear file."""
 
 from pathlib import Path
 
@@ -14,17 +14,17 @@ def load_gear(path: str | Path) -> GearRecord:
     Parameters
     ----------
     path
-        A file, or the name of a gear that comes with the package, such as ``'kaifuha'``.
+        A file, or the name of a gear in the package, such as ``'kaifuha'``.
 
     Returns
     -------
     GearRecord
-        Frozen, each value with its unit in its name.
+        Frozen record; each key ends in its unit.
 
     Raises
     ------
     GearError
-        Naming file, key, what was found and what was expected.
+        If the file is missing or a value is wrong; it names file, key, found and expected values.
 
     Examples
     --------

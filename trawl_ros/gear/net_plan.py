@@ -1,4 +1,4 @@
-"""The net plan: pieces of netting as a plan on paper has them, row by row of a table."""
+"""Net plan: pieces of netting as on a paper plan, one row of a table each."""
 
 import re
 from typing import Annotated, Literal
@@ -17,21 +17,21 @@ WING_PANELS = ('upper', 'lower', 'side', 'side_upper', 'side_lower')
 BODY_PANELS = ('upper', 'lower', 'side', 'side_upper', 'side_lower', 'all')
 
 SIDES = ('side', 'side_upper', 'side_lower')
-"""Panels of which a net has one at port and one at starboard."""
+"""Panels that a net has at port and at starboard."""
 
 _CUT = re.compile(r'(?:A([BNT])|(?:(\d+)([NT]))?(?:(\d+)B)?)')
 
 
 def cut_slope(cut: str) -> float:
-    """Meshes that an edge of this cutting rate moves across per mesh along it.
+    """Return the slope of an edge of this cutting rate: meshes across per mesh along.
 
-    A bar (B) goes half a mesh along and half a mesh across, a point (N) one along, a mesh (T) one
+    A bar (B) is half a mesh along and half a mesh across, a point (N) one along, a mesh (T) one
     across: ``AB`` gives 1, ``1N2B`` gives 0.5, ``AN`` gives 0.
 
     Raises
     ------
     ValueError
-        If it is no cutting rate, or one that never comes forward.
+        If it is no cutting rate, or has no length along.
     """
     found = _CUT.fullmatch(cut.replace(' ', '').upper())
     if found is None or not cut.strip():
@@ -43,19 +43,18 @@ def cut_slope(cut: str) -> float:
     along = slanted + (straight if kind == 'N' else 0.0)
     across = slanted + (straight if kind == 'T' else 0.0)
     if along <= 0.0:
-        raise ValueError(f"found '{cut}', expected a cut that comes forward")
+        raise ValueError(f"found '{cut}', expected a cut with bars or points")
     return across / along
 
 
 class PieceRecord(Record):
-    """A piece of netting: counts of meshes across its front and back edge, and along it.
+    """Piece of netting: counts of meshes across its front and back edge, and along it.
 
-    Counts of a ``wing`` are those of one of its two pieces (or of one, where ``pieces`` is 1: a
-    panel that reaches further forward over its whole width), those of a panel of the ``body`` are
-    its own, and those of ``all`` go all around. Where the count of one edge is missing it follows
-    from the ``cut``. Counts of ``square`` meshes are those of their bars. Where there are ``ropes``
-    in place of meshes, counts across are ropes, and ``mesh_mm`` is what one of them takes of the
-    edge that is hung on the frame.
+    Counts of a ``wing`` are those of one of its two pieces; with ``pieces`` 1 the wing is a panel
+    that continues forward over its whole width. Counts of ``all`` are those of the whole
+    circumference. If one edge has no count, it follows from the ``cut``. ``square`` meshes are
+    counted by their bars. For ``ropes`` in place of meshes, counts across are numbers of ropes, and
+    ``mesh_mm`` is the length of frame per rope.
     """
 
     part: Part
@@ -77,7 +76,7 @@ class PieceRecord(Record):
     @model_validator(mode='before')
     @classmethod
     def _counted(cls, data: object) -> object:
-        """Meshes of the edge that is not given, from the cut and the other edge."""
+        """Compute the count of a missing edge from the cut and the other edge."""
         if not isinstance(data, dict) or not isinstance(data.get('cut'), str):
             return data
         long, part = data.get('long_meshes'), data.get('part')
@@ -103,16 +102,15 @@ class PieceRecord(Record):
         if self.orientation == 'square' and (self.part == 'wing' or self.panel != 'all'):
             raise ValueError(
                 f'orientation: found square in the {self.panel} {self.part}, expected T0 or T90: '
-                'bars of square meshes lie along and across the flow, which is modelled in netting '
-                'that goes all around ahead of the codend, and in the codend'
+                'square meshes are modelled in the codend and in sections ahead of it that have '
+                'one panel (all)'
             )
         if self.orientation == 'ropes' and (
             self.part != 'body' or self.front_meshes != self.back_meshes
         ):
             raise ValueError(
                 f'orientation: found ropes in a {self.part}, {self.front_meshes:g} at its front '
-                f'and {self.back_meshes:g} at its back, expected them in the body, and as many '
-                'at its back as at its front'
+                f'and {self.back_meshes:g} at its back, expected equal numbers of ropes in the body'
             )
         if self.cut is not None:
             try:
@@ -128,7 +126,7 @@ class PieceRecord(Record):
 
     @property
     def pitch(self) -> float:
-        """Distance (m) that is counted: a stretched mesh, or the bar of a square one."""
+        """Distance (m) per count: a stretched mesh, or the bar of a square mesh."""
         return self.mesh if self.orientation != 'square' else 0.5 * self.mesh
 
     @property
@@ -143,7 +141,7 @@ class PieceRecord(Record):
 
     @property
     def twine(self) -> Twine:
-        """The piece's twine."""
+        """Twine of the piece."""
         diameter = None if self.twine_diameter_mm is None else 1e-3 * self.twine_diameter_mm
         return twine_of(self.material, self.rtex, diameter)
 
@@ -161,7 +159,7 @@ class PieceRecord(Record):
     def twine_length(self) -> float:
         """Length of twine or ropes (m) in all such pieces.
 
-        A mesh has two meshes' length of twine, a square one two bars.
+        A diamond mesh has twine of twice its length, a square mesh two bars.
         """
         if self.orientation == 'ropes':
             return self.front_meshes * self.length * self.twines * self.count
@@ -170,20 +168,20 @@ class PieceRecord(Record):
 
     @property
     def twine_area(self) -> float:
-        """Area of that twine, length times diameter, m²."""
+        """Area of this twine, length times diameter, m²."""
         return self.twine_length * self.twine.diameter
 
     @property
     def mass(self) -> float:
-        """Mass of that twine in air without what its knots take, kg."""
+        """Mass of this twine in air without its knots, kg."""
         return self.twine_length * self.twine.tex
 
 
 class HangingRecord(Record):
-    """Hanging ratios: rope over stretched netting, along bosoms, cut edges of wings and their tips.
+    """Hanging ratios: rope over stretched netting, along bosoms, wing edges and wing tips.
 
-    Bosoms and tips have the rope that these say; the wing edges the rest of the rope's length, or
-    what ``wing_edge`` says where the file gives no length.
+    Wing edges take the remainder of a rope of given length; without a length they have the ratio
+    ``wing_edge``.
     """
 
     bosom: Annotated[float, Field(gt=0.1, le=1)] = 0.5
@@ -192,11 +190,11 @@ class HangingRecord(Record):
 
 
 class NetPlanRecord(Record):
-    """A net plan: pieces from the wings to the codend, in the order in which the plan has them.
+    """Net plan: pieces from the wings to the codend, in the order of the plan.
 
-    Pieces of the body that share a ``section`` stand beside each other and are equally long; pieces
-    of one panel's wing, and sections of the codend, follow each other. Without ``shielded`` all
-    netting has the drag of its single twines and knots.
+    Pieces of the body with the same ``section`` lie side by side and have one length. Pieces of one
+    panel's wing, and sections of the codend, follow each other. Without ``shielded`` all netting
+    has the drag of its single twines and knots.
     """
 
     hanging: HangingRecord = HangingRecord()
@@ -220,8 +218,8 @@ class NetPlanRecord(Record):
                 ):
                     raise ValueError(
                         f"pieces: section '{name}' has the panels {', '.join(panels)}, expected "
-                        'all, or upper and lower, with side or with side_upper and side_lower '
-                        'between them, each once'
+                        'all, or upper and lower once each, with side, with side_upper and '
+                        'side_lower, or with neither'
                     )
                 if (around := sum(piece.front_meshes for piece in pieces)) < 1:
                     raise ValueError(
@@ -239,40 +237,42 @@ class NetPlanRecord(Record):
             ropes = {piece.orientation == 'ropes' for piece in pieces}
             if len(ropes) > 1 or (behind_netting and True in ropes):
                 raise ValueError(
-                    f"pieces: section '{name}' has ropes beside or behind netting, expected all of "
-                    'its panels, and those ahead of it, to be ropes'
+                    f"pieces: section '{name}' has ropes beside or behind netting, expected ropes "
+                    'in all of its panels and in all sections ahead of it'
                 )
             behind_netting |= False in ropes
         if not behind_netting:
-            raise ValueError('pieces: found no netting behind the ropes, expected some')
+            raise ValueError(
+                'pieces: found no netting behind the ropes, expected at least one piece'
+            )
         for panel in ('upper', 'lower'):
             if not self.wing(panel):
                 raise ValueError(f'pieces: found no wing of the {panel} panel, expected one')
         if self.panels == ('all',) and any(p.part == 'wing' for p in self.pieces):
             raise ValueError(
-                'pieces: the foremost section is one piece all around, expected its panels, to '
-                'which the wings are joined'
+                'pieces: found one panel (all) in the foremost section, expected upper and lower '
+                'panels, to which the wings are joined'
             )
         return self
 
     def sections(self, part: Part) -> list[tuple[str, list[PieceRecord]]]:
-        """Sections of the body or the codend, from front to back, with the pieces of each."""
+        """Return the sections of body or codend, from front to back, with the pieces of each."""
         found: dict[str, list[PieceRecord]] = {}
         for number, piece in enumerate(self.pieces):
             if piece.part == part:
-                # Pieces without a name are sections of their own, one after another.
+                # Each piece without a section name is a section.
                 found.setdefault(piece.section or f'{part} {number + 1}', []).append(piece)
         return list(found.items())
 
     @property
     def panels(self) -> tuple[str, ...]:
-        """Panels at the mouth, ``('all',)`` where the body is one piece."""
+        """Panels at the mouth; ``('all',)`` if there is one piece."""
         return tuple(piece.panel for piece in self.sections('body')[0][1])
 
     def mouth_width(self, panel: str) -> float:
-        """Stretched width (m) of a panel at the mouth; 0 for one that the net has not.
+        """Return the stretched width (m) of a panel at the mouth; 0 if there is none.
 
-        That of a ``side`` is the sum of its two panels in a net of six.
+        The width of a ``side`` with two panels is their sum.
         """
         names = SIDES if panel == 'side' else (panel,)
         return sum(p.widths[0] for p in self.sections('body')[0][1] if p.panel in names)
@@ -283,21 +283,21 @@ class NetPlanRecord(Record):
         return sum(piece.count * piece.widths[0] for piece in self.sections('body')[0][1])
 
     def wing(self, panel: str) -> list[PieceRecord]:
-        """Pieces of a panel's wing, from the mouth forward."""
+        """Return the pieces of a panel's wing, from the mouth forward."""
         return [p for p in self.pieces if p.part == 'wing' and p.panel == panel][::-1]
 
     @property
     def open_side(self) -> bool:
-        """True for a net whose sides are cut out between upper and lower wings."""
+        """True if the sides are cut out between upper and lower wings."""
         return not set(SIDES).isdisjoint(self.panels) and not self.wing('side')
 
     def hung_netting(self, rope: str) -> dict[str, float]:
-        """Stretched netting (m) that hangs on a rope of the frame, by kind.
+        """Return the stretched netting (m) that hangs on a rope of the frame, by kind.
 
         Parameters
         ----------
         rope
-            ``headrope``, ``footrope`` or ``side_rope``, which is the one of one side.
+            ``headrope``, ``footrope`` or ``side_rope`` (of one side).
 
         Returns
         -------
@@ -330,7 +330,7 @@ class NetPlanRecord(Record):
         }
 
     def rope_length(self, rope: str) -> float:
-        """Length (m) of a rope of the frame that the hanging ratios give it."""
+        """Return the length (m) of a rope of the frame by the hanging ratios."""
         netting, ratios = self.hung_netting(rope), self.hanging
         return (
             ratios.wing_edge * netting['edge']
@@ -339,5 +339,5 @@ class NetPlanRecord(Record):
         )
 
     def wing_length(self, panel: str) -> float:
-        """Stretched length of a panel's wing, m."""
+        """Return the stretched length of a panel's wing, m."""
         return sum(piece.length for piece in self.wing(panel))

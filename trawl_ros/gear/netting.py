@@ -1,4 +1,4 @@
-"""Records of the netting: its sections or its plan, and how finely it is cut."""
+"""Records of the netting: its sections or its plan, and its numerical mesh."""
 
 from typing import Annotated, Literal
 
@@ -10,13 +10,12 @@ from trawl_ros.gear.numbers import Length, Mesh, NotNegative, Positive
 
 
 class SectionRecord(Record):
-    """A section of netting, from front to back; its stretched circumference tapers linearly.
+    """Section of netting, from front to back; its stretched circumference tapers linearly.
 
-    ``shielding`` is the part of the drag of single twines that is left in this netting, that of
-    `trawl_ros.model.net.wake` where the file does not give it; ``twines`` the number of them side
-    by side in each bar. Bars of a codend may have a ``mesh_angle_deg`` of their own, or lie along
-    and across (``square``). ``ropes`` of a plan have no meshes:
-    ``mesh_m`` is what one of them takes of the circumference at the mouth.
+    ``shielding`` is the drag in this netting over that of single twines; by default it is that of
+    `trawl_ros.model.net.wake`. ``twines`` is the number of twines side by side in each bar. Bars of
+    a codend may have their own ``mesh_angle_deg``, or lie along and across the flow (``square``).
+    ``ropes`` of a plan have no meshes; ``mesh_m`` is the circumference at the mouth per rope.
     """
 
     name: str
@@ -36,22 +35,22 @@ class SectionRecord(Record):
 
 
 class NettingRecord(Record):
-    """The net: sections of diamond mesh, a codend, and how they are grouped; or its plan.
+    """Net: sections of diamond mesh and a codend, or a plan, and their numerical mesh.
 
-    With a ``plan`` sections, codend and wings are those of its pieces.
+    With a ``plan``, sections, codend and wings are those of its pieces.
 
-    ``around`` numerical meshes stand for the real ones of every row; a numerical row is as long
-    as keeps the angle of the meshes. ``body`` sections become netting, the ``codend`` sections
-    one line of ``codend_segments`` with the drag of its twine at the stated angle. Behind each
-    stretched circumference of ``halved_at_circumference_m`` half as many numerical meshes go
-    around as before it. ``bowing_pressure_pa`` is the load of the water across twine, per
-    projected area, under which it bows between its knots; without it bars are straight.
+    ``around`` numerical meshes stand for the real meshes of every row; the length of a numerical
+    row keeps the angle of the meshes. ``body`` sections become netting. The ``codend`` sections
+    become one line of ``codend_segments`` with the drag of their twine at the stated angle. Behind
+    each stretched circumference of ``halved_at_circumference_m`` the number of numerical meshes
+    around is halved. ``bowing_pressure_pa`` is the load of the water across twine, per projected
+    area, under which it sags between its knots; without it bars are straight.
 
     ``normal_drag`` (eq. 23), ``friction`` (eq. 24) and ``knot_drag`` are the coefficients at high
-    Reynolds numbers. They grow as these fall, ``viscous`` times as `trawl_ros.model.net.wake`
-    has it. ``wake_exchange`` is the exchange of water along a sheet with the water outside
-    (`trawl_ros.model.net.wake`), ``lift`` the lift of sheets by the square of their solidity.
-    Defaults are those that panels bear out (config/panels).
+    Reynolds numbers. ``viscous`` is a factor on their increase at low Reynolds numbers,
+    ``wake_exchange`` the exchange of water along a sheet with the water outside, and ``lift`` the
+    lift of sheets per square of their solidity (`trawl_ros.model.net.wake`). Defaults agree with
+    measured panels (config/panels).
     """
 
     around: Annotated[int, Field(ge=12, le=240, multiple_of=12)]
@@ -85,9 +84,9 @@ class NettingRecord(Record):
         }
         for key, value in outline.items():
             if self.plan is None and value is None:
-                raise ValueError(f'{key}: missing, expected it, or a plan')
+                raise ValueError(f'{key}: missing, expected this key or a plan')
             if self.plan is not None and value is not None:
-                raise ValueError(f'{key}: found beside a plan, expected one of them')
+                raise ValueError(f'{key}: found together with a plan, expected one of them')
         if any(section.ropes for section in (*self.body, *self.codend)):
-            raise ValueError('body: found ropes, expected them in a plan, which has the wings')
+            raise ValueError('body: found ropes, expected them only in a plan')
         return self

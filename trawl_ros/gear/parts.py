@@ -1,4 +1,4 @@
-"""Names of a gear's own parts, in place of those that most gears have."""
+"""Names of a gear's parts in texts, in place of those of most gears."""
 
 import re
 
@@ -6,10 +6,10 @@ from trawl_ros.gear.records import GearRecord
 
 
 def own_parts(text: str, gear: GearRecord) -> str:
-    """Text about a gear with the names of its own parts.
+    """Return a text about a gear with the names of its own parts.
 
-    Two ships tow plates where one tows boards or doors, and without a clump a weight at the lower
-    wing tips is one of these.
+    A pair trawl has plates instead of boards or doors. A gear without clumps has weights at its
+    lower wing tips.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A net plan as a table (CSV), read and written as the section of a gear file."""
+"""Net plan: read from a table (CSV), written as a section of a gear file."""
 
 import csv
 from pathlib import Path
@@ -11,8 +11,8 @@ from trawl_ros.core.limits import YAML_BYTES
 from trawl_ros.core.schema import CONTROL, validated
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord
 
-TEXT = ('part', 'panel', 'section', 'material', 'knots', 'cut', 'orientation')
-WHOLE = ('twines', 'pieces')
+TEXT_COLUMNS = ('part', 'panel', 'section', 'material', 'knots', 'cut', 'orientation')
+INTEGER_COLUMNS = ('twines', 'pieces')
 
 
 def read_plan(path: Path) -> NetPlanRecord:
@@ -21,13 +21,14 @@ def read_plan(path: Path) -> NetPlanRecord:
     Parameters
     ----------
     path
-        UTF-8, with a heading; columns are the keys of `PieceRecord`, separated by commas or
-        semicolons. Empty cells are missing keys; lines that are empty or begin with # are none.
+        UTF-8 file with a heading. Columns are the keys of `PieceRecord`, separated by commas or
+        semicolons. Empty cells are missing keys. Empty lines and lines that begin with # are
+        ignored.
 
     Raises
     ------
     GearError
-        Naming file, line and column, what was found and what was expected.
+        If the table is wrong; it names file, line, column, found and expected values.
     """
     with open_file(path, GearError) as stream:
         raw = stream.read(YAML_BYTES.value + 1)
@@ -53,7 +54,7 @@ def _plan(path: Path, text: str) -> NetPlanRecord:
         if line.strip(' ;,') and not line.lstrip().startswith('#')
     ]
     if not lines:
-        raise GearError(f'{path}: found no line, expected a heading and a line for each piece')
+        raise GearError(f'{path}: found no lines, expected a heading and a line for each piece')
     mark = ';' if lines[0][1].count(';') > lines[0][1].count(',') else ','
     try:
         rows = list(csv.reader([line for _, line in lines], delimiter=mark, strict=True))
@@ -62,15 +63,15 @@ def _plan(path: Path, text: str) -> NetPlanRecord:
     heading, known = [name.strip() for name in rows[0]], list(PieceRecord.model_fields)
     for name in heading:
         if name not in known:
-            raise GearError(f"{path}: column '{name}', expected one of {', '.join(known)}")
+            raise GearError(f"{path}: found column '{name}', expected one of {', '.join(known)}")
         if heading.count(name) > 1:
-            raise GearError(f"{path}: column '{name}' stands twice, expected each once")
+            raise GearError(f"{path}: found column '{name}' twice, expected each column once")
     pieces = []
     for (number, _), cells in zip(lines[1:], rows[1:], strict=False):
         if len(cells) != len(heading):
             raise GearError(
-                f'{path}: line {number} has {len(cells)} cells, expected {len(heading)} as in the '
-                'heading'
+                f'{path}: line {number}: found {len(cells)} cells, expected {len(heading)} as in '
+                'the heading'
             )
         piece = {
             name: _value(name, cell.strip(), f'{path}: line {number}')
@@ -83,16 +84,16 @@ def _plan(path: Path, text: str) -> NetPlanRecord:
 
 
 def _value(name: str, cell: str, place: str) -> str | float | int:
-    if name in TEXT:
+    if name in TEXT_COLUMNS:
         return cell
     try:
-        return int(cell) if name in WHOLE else float(cell)
+        return int(cell) if name in INTEGER_COLUMNS else float(cell)
     except ValueError as reason:
         raise GearError(f"{place}: {name}: found '{cell}', expected a number") from reason
 
 
 def plan_text(plan: NetPlanRecord) -> str:
-    """Text of the ``plan`` of a gear file's ``netting``, a line per piece."""
+    """Return the text of the ``plan`` in a gear file's ``netting``, with a line per piece."""
     lines = ['plan:', '  pieces:']
     for piece in plan.pieces:
         given = piece.model_dump(exclude_defaults=True, exclude_none=True)

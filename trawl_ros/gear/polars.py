@@ -10,24 +10,28 @@ from trawl_ros.core.resources import packaged
 from trawl_ros.core.schema import load_yaml, validated
 from trawl_ros.gear.boards import BoardLawRecord, BoardRecord, DoorRecord, TiltPointRecord
 
-AHEAD, AHEAD_STALLED = 0.15, 0.0
-"""Centre of pressure (chords ahead of the middle) at no attack and from 45°, where none is given:
-it moves back as a board stalls. Assumed; see `docs/gear_format.md`."""
+CENTRE_AHEAD_CHORDS = (0.15, 0.0)
+"""Default centre of pressure ahead of the middle at zero attack and from `STALLED_DEG` on.
+
+It moves aft as a board stalls. Assumed; see `docs/gear_format.md`.
+"""
 
 FOIL_EFFICIENCY = 0.8
 """Span efficiency of the induced drag of a foil; assumed."""
 
-STALLED = 45.0
-"""Angle (deg) at which a foil has stalled altogether and is a flat plate."""
+STALLED_DEG = 45.0
+"""Angle of attack at which a foil is fully stalled and acts as a flat plate."""
 
-PLATE = 0.85
-"""C_L = `PLATE` sin 2α of a stalled plate; FAO's flat door has 0.76 at 45°, its oval one 0.88."""
+PLATE_LIFT = 0.85
+"""Lift of a stalled plate, C_L = `PLATE_LIFT` sin 2α; FAO's doors have 0.76 (flat), 0.88 (oval)."""
 
 
 @dataclass(frozen=True)
 class Tilt:
-    """Loads of a tilted board in a level flow: ``sine`` (m,) of the tilt, rising; ``lift_factor``
-    of its horizontal lift and its ``upward`` force coefficient C_Z, each (m,).
+    """Loads of a tilted board in a level flow, each (m,).
+
+    ``sine`` of the tilt, rising; ``lift_factor`` of the horizontal lift; ``upward`` force
+    coefficient C_Z.
     """
 
     sine: FloatArray
@@ -36,15 +40,21 @@ class Tilt:
 
 
 UPRIGHT = Tilt(np.zeros(1), np.ones(1), np.zeros(1))
-"""Of a board whose loads turn with it whatever its tilt, since none was measured."""
+"""Tilt of a board without measured tilts; its loads rotate with it."""
 
 
 @dataclass(frozen=True)
 class Polar:
-    """Polar of a board: ``attack`` (n,) rad, rising; ``lift`` C_L, ``drag`` C_D and ``ahead``, the
-    centre of pressure in chords ahead of the centre of gravity, each (n,).
+    """Polar of a board.
 
-    ``heel`` is by the vertical part of the outward normal, ``trim`` by that of the forward axis.
+    Attributes
+    ----------
+    attack : (n,) array
+        Rising angles of attack, rad.
+    lift, drag, ahead : (n,) arrays
+        C_L, C_D, and the centre of pressure in chords ahead of the centre of gravity.
+    heel, trim
+        Tilts by the vertical part of the outward normal and of the forward axis.
     """
 
     attack: FloatArray
@@ -61,14 +71,14 @@ def load_door(name: str) -> DoorRecord:
     Raises
     ------
     GearError
-        Naming file, key, what was found and what was expected.
+        If the file is missing or a value is wrong; it names file, key, found and expected values.
     """
     path = packaged(name, 'doors', GearError)
     return validated(DoorRecord, load_yaml(path, GearError), path, GearError)
 
 
 def polar_of(board: BoardRecord) -> Polar | None:
-    """Polar of a board's law; None for the straight lines of eq. 14."""
+    """Return the polar of a board's law; None for the straight lines of eq. 14."""
     law = board.law
     if law is None:
         return None
@@ -100,35 +110,38 @@ def _tilt(points: tuple[TiltPointRecord, ...]) -> Tilt:
 
 
 def _usual_ahead(attack_deg: float) -> float:
-    share = float(np.clip(attack_deg / STALLED, 0.0, 1.0))
-    return AHEAD + share * (AHEAD_STALLED - AHEAD)
+    share = float(np.clip(attack_deg / STALLED_DEG, 0.0, 1.0))
+    attached, stalled = CENTRE_AHEAD_CHORDS
+    return attached + share * (stalled - attached)
 
 
 def _foil(law: BoardLawRecord, aspect: float) -> Polar:
-    """Polar of a cambered board: Helmbold's slope of lift from the zero lift of a circular arc,
-    levelling off at the stall; beyond it a flat plate.
+    """Return the polar of a cambered board.
+
+    Lift begins with Helmbold's slope at the zero lift of a circular arc and has its maximum at the
+    stall. Beyond it the board becomes a flat plate.
     """
     assert law.max_lift is not None
     assert law.stall_deg is not None
     slope = 2 * np.pi * aspect / (2 + np.sqrt(aspect**2 + 4))
-    stall, end = np.radians([law.stall_deg, STALLED])
-    # Imported here: it takes long, and boards by formula have no use for it.
+    stall, end = np.radians([law.stall_deg, STALLED_DEG])
+    # Imported here: the import is slow, and boards by formula do not need it.
     from scipy.interpolate import CubicHermiteSpline
 
     start = min(slope * 2 * law.camber, 0.6 * law.max_lift)
-    # A cubic that rises to its top without overshooting has at most three times the mean slope.
+    # A cubic is monotone up to three times the mean slope.
     rise = min(slope, 2.5 * (law.max_lift - start) / stall)
     lift = CubicHermiteSpline(
         [0.0, stall, end],
-        [start, law.max_lift, PLATE * np.sin(2 * end)],
-        [rise, 0.0, 2 * PLATE * np.cos(2 * end)],
+        [start, law.max_lift, PLATE_LIFT * np.sin(2 * end)],
+        [rise, 0.0, 2 * PLATE_LIFT * np.cos(2 * end)],
     )
     attack = np.unique(np.concatenate([np.linspace(0.0, stall, 9), np.linspace(stall, end, 9)]))
     induced = law.base_drag + lift(np.minimum(attack, stall)) ** 2 / (
         np.pi * FOIL_EFFICIENCY * aspect
     )
-    # Where the flow has left the back altogether, the force is across the plate.
-    plate = law.base_drag + PLATE * np.sin(2 * end) * np.tan(end)
+    # In fully separated flow the force is normal to the plate.
+    plate = law.base_drag + PLATE_LIFT * np.sin(2 * end) * np.tan(end)
     drag = induced + np.maximum(attack - stall, 0.0) / (end - stall) * (plate - induced)
     ahead = np.array([_usual_ahead(a) for a in np.degrees(attack)])
     return Polar(attack, lift(attack), drag, ahead)

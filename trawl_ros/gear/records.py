@@ -1,4 +1,4 @@
-"""Records of the gear file: every key carries its unit, every value is checked on load."""
+"""Records of the gear file: every key has its unit, every value is checked on load."""
 
 from typing import Annotated
 
@@ -6,20 +6,40 @@ from pydantic import Field, ValidationError, model_validator
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.schema import FrozenDict, Numbers, Record
-from trawl_ros.gear.boards import CORRECTIONS, BoardRecord, StartRecord
+from trawl_ros.gear.boards import (
+    CORRECTIONS,
+    BoardRecord,
+    CoefficientsRecord,
+    FasteningRecord,
+    StartRecord,
+    plate_inertia,
+)
 from trawl_ros.gear.catch import CatchRecord
 from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.numbers import Degrees, NotNegative, Positive
-from trawl_ros.gear.pair import PairRecord, towing_plate
-from trawl_ros.gear.rigging import ENDS, HungRecord, OwnBridleRecord, SweepRecord
-from trawl_ros.gear.ropes import BridleRecord, FrameRopeRecord, WarpRecord
+from trawl_ros.gear.rigging import (
+    ENDS,
+    BridleRecord,
+    FrameRopeRecord,
+    HungRecord,
+    OwnBridleRecord,
+    SweepRecord,
+    WarpRecord,
+)
 from trawl_ros.gear.sea_water import WaterRecord
+from trawl_ros.records.coefficients import COEFFICIENTS
+
+PLATE_DENSITY_KG_M3 = 7850.0
+"""Density of the towing plate and its shackles."""
+
+PLATE_WARP_AHEAD_M, PLATE_BRIDLES_AHEAD_M, PLATE_BRIDLES_UP_M = 0.3, -0.2, 0.25
+"""Holes of the towing plate from its middle; bridles are above and below. Assumed."""
 
 
 class ShipRecord(Record):
     """Ship: spacing of the towing blocks, and limits of acceleration and turning.
 
-    The two ships of a pair have a distance in place of the spacing, see `PairRecord`.
+    A pair trawl has the distance of both ships instead of the spacing, see `PairRecord`.
     """
 
     block_spacing_m: Annotated[float, Field(gt=0, le=50)] | None = None
@@ -35,11 +55,11 @@ class WinchRecord(Record):
 
 
 class KiteRecord(Record):
-    """The canvas kite on the headrope's centre.
+    """Canvas kite on the headrope's centre.
 
-    Legs of its own hold it at ``setting_deg`` to the flow; or, with ``chord_m``, it hangs between
-    the headrope and a point that lies as much stretched netting behind, and pitches with these.
-    Normal force: ``normal_slope`` per radian of attack, at most ``normal_limit``.
+    Its legs hold it at ``setting_deg`` to the flow. With ``chord_m`` it pitches with the line from
+    the headrope to a point this length of stretched netting behind it. The normal coefficient is
+    ``normal_slope`` per radian of attack, at most ``normal_limit``.
     """
 
     area_m2: Annotated[float, Field(gt=0, le=1000)]
@@ -52,8 +72,43 @@ class KiteRecord(Record):
     drag_base: NotNegative
 
 
+class PairRecord(Record):
+    """Pair trawl: two ships abreast, ``distance_m`` apart, that tow one net without boards.
+
+    ``plate_mass_kg`` is the mass of the triangular plate, with its shackles, between the warp of
+    either ship and the bridles. It has no drag.
+    """
+
+    distance_m: Annotated[float, Field(gt=10, le=2000)]
+    plate_mass_kg: Annotated[float, Field(gt=1, le=5000)] = 60.0
+
+
+def towing_plate(pair: PairRecord) -> BoardRecord:
+    """Return the plate as a body in place of a board, without hydrodynamic loads."""
+    long, high = PLATE_WARP_AHEAD_M - PLATE_BRIDLES_AHEAD_M, 2 * PLATE_BRIDLES_UP_M
+    volume = pair.plate_mass_kg / PLATE_DENSITY_KG_M3
+    return BoardRecord.model_validate(
+        {
+            'mass_kg': pair.plate_mass_kg,
+            'volume_m3': volume,
+            'inertia': plate_inertia(pair.plate_mass_kg, volume, high, long),
+            # So small that corrections to its coefficients, all zero, have no effect.
+            'area_m2': 1e-6,
+            'span_m': high,
+            'chord_m': long,
+            'coefficients': CoefficientsRecord(**dict.fromkeys(COEFFICIENTS, 0.0)),
+            'rotary_slope': 0.0,
+            'fastening': FasteningRecord(
+                warp_m=(PLATE_WARP_AHEAD_M, 0.0, 0.0),
+                upper_bridle_m=(PLATE_BRIDLES_AHEAD_M, 0.0, PLATE_BRIDLES_UP_M),
+                lower_bridle_m=(PLATE_BRIDLES_AHEAD_M, 0.0, -PLATE_BRIDLES_UP_M),
+            ),
+        }
+    )
+
+
 class ClumpRecord(Record):
-    """A weight at each lower wing tip."""
+    """Weight at each lower wing tip."""
 
     weight_in_water_n: NotNegative
     density_kg_m3: Annotated[float, Field(gt=1100, le=25_000)]
@@ -84,7 +139,7 @@ class ProvenanceRecord(Record):
 
 
 class EffectRecord(Record):
-    """An effect beyond the paper's model: its name in the catalogue, and its parameters."""
+    """Effect beyond the paper's model: its name in the catalogue, and its parameters."""
 
     name: str
     values: Numbers = FrozenDict()
@@ -97,18 +152,18 @@ class GearRecord(Record):
     Attributes
     ----------
     name
-        Of the gear.
+        Name of the gear.
     water, ship, winch
         Density, gravity, current and temperature; towing blocks; speed of the winches.
     warp, bridle, headrope, footrope
         Ropes: lengths (m), diameters (m), weight in water (N/m), stiffness EA (N), drag.
     board
         Otter board: mass (kg), inertia (kg m²), area (m²), coefficients of eq. 14, fastening (m).
-        Of a pair trawl it is the plate to which warp and bridles are shackled.
+        For a pair trawl it is the plate to which warp and bridles are shackled.
     pair
         Distance of the two ships (m) that tow a gear without boards; None for one ship.
     netting
-        Sections of the net, and how finely it is cut.
+        Sections of the net, and its numerical mesh.
     kite, clump, floats
         Kite, weights and floats of the mouth.
     catch
@@ -168,7 +223,7 @@ class GearRecord(Record):
             return data
         try:
             pair = PairRecord.model_validate(data['pair'])
-        except ValidationError:  # told of the pair's own keys
+        except ValidationError:  # the validation of `pair` reports its keys
             pair = PairRecord(distance_m=100.0)
         return {**data, 'board': towing_plate(pair)}
 
@@ -189,11 +244,11 @@ class GearRecord(Record):
             return self
         if spacing is not None:
             raise ValueError(
-                f'ship.block_spacing_m: found {spacing:g} beside a pair, expected only '
+                f'ship.block_spacing_m: found {spacing:g} together with a pair, expected only '
                 'pair.distance_m'
             )
         if self.board != towing_plate(self.pair):
-            raise ValueError('board: found beside a pair, expected one of them')
+            raise ValueError('board: found together with a pair, expected one of them')
         return self
 
     @model_validator(mode='after')
@@ -214,14 +269,14 @@ class GearRecord(Record):
                 raise ValueError(f'bridles[{number}].at_board: missing, expected upper or lower')
             if self.sweep is not None and bridle.at_board is not None:
                 raise ValueError(
-                    f'bridles[{number}].at_board: found {bridle.at_board} beside a sweep, expected '
-                    'none: all bridles begin at its end'
+                    f'bridles[{number}].at_board: found {bridle.at_board} together with a sweep, '
+                    'expected none: all bridles begin at the end of the sweep'
                 )
         for end in ('at_net',) if self.sweep is not None else ('at_board', 'at_net'):
             missing = set(ENDS) - {getattr(bridle, end) for bridle in self.bridles}
             if missing:
                 raise ValueError(
-                    f'bridles: found none {end} {", ".join(sorted(missing))}, expected one at least'
+                    f'bridles: found none {end} {", ".join(sorted(missing))}, expected at least one'
                 )
         ropes = ['headrope', 'footrope', 'side_rope', *(f'{name}_bridle' for name in names)]
         if self.sweep is not None:
@@ -235,14 +290,14 @@ class GearRecord(Record):
 
     @property
     def block_distance(self) -> float:
-        """Distance (m) of the two towing blocks: of one ship's, or of the two ships of a pair."""
+        """Distance (m) of the two towing blocks, on one ship or on the two ships of a pair."""
         spacing = self.ship.block_spacing_m if self.pair is None else self.pair.distance_m
         assert spacing is not None
         return spacing
 
     @property
     def behind_boards(self) -> float:
-        """Length (m) of the longest way along ropes from a board to the net."""
+        """Length (m) of the longest path along ropes from a board to the net."""
         ahead = 0.0
         if self.sweep is not None:
             backstrops = self.sweep.upper_backstrop_m, self.sweep.lower_backstrop_m
@@ -255,7 +310,7 @@ class GearRecord(Record):
         Raises
         ------
         GearError
-            For a pair trawl, with ``what`` was wanted of its boards.
+            For a pair trawl; ``what`` says why the boards are needed.
         """
         if self.pair is not None:
             raise GearError(
@@ -264,14 +319,21 @@ class GearRecord(Record):
             )
 
     def bridle_of(self, own: OwnBridleRecord | SweepRecord) -> BridleRecord:
-        """Make of one of the bridles, or of the sweep."""
+        """Return the properties of a bridle, or of the sweep."""
         return self.bridle.model_copy(update=own.changes)
 
     def refined(
         self, *, warp: int = 1, bridle: int = 1, net: float = 1.0, unjoined: bool = False
     ) -> 'GearRecord':
-        """Copy of the gear cut finer; the net as nearly as a multiple of 12 meshes allows, and
-        with ``unjoined`` as many meshes around its end as around its mouth.
+        """Return a copy of the gear with a finer numerical mesh.
+
+        Parameters
+        ----------
+        warp, bridle, net
+            Factors on the segments of warps and bridles and on the meshes of the net, which are
+            rounded to a multiple of 12.
+        unjoined
+            True for a net with the same number of meshes around its end as around its mouth.
         """
         halved_at = () if unjoined else self.netting.halved_at_circumference_m
         return self.model_copy(

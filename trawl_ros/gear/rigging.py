@@ -1,20 +1,55 @@
-"""Records of the rigging between boards and net: bridles of any make, and what hangs on ropes."""
+"""Records of ropes and rigging: warps, bridles, sweeps, frame ropes, and bodies on ropes."""
 
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
-from trawl_ros.gear.numbers import Length, NotNegative, Share, Stiffness, Weight
+from trawl_ros.gear.numbers import Damping, Drag, Length, NotNegative, Share, Stiffness, Weight
 
 ENDS: tuple[Literal['upper'], Literal['lower']] = 'upper', 'lower'
-"""Wing tips, and points of a board, that have a bridle in any gear."""
+"""Wing tips, and fastening points of a board, that have a bridle in every gear."""
 
 Name = Annotated[str, Field(pattern=r'^[a-z][a-z0-9_]{0,30}$')]
 
 
+class RopeRecord(Record):
+    """Properties of a rope; ``segments`` of its kinds is the number of its numerical bars."""
+
+    diameter_m: Annotated[float, Field(gt=0, le=0.5)]
+    weight_in_water_n_m: Weight
+    stiffness_n: Stiffness
+    damping_time_s: Damping
+    normal_drag: Drag
+    tangential_drag: Drag
+    added_mass_normal: Drag
+    added_mass_tangential: Drag
+
+
+class WarpRecord(RopeRecord):
+    """Warp; its length is commanded to the winch."""
+
+    segments: Annotated[int, Field(ge=2, le=500)]
+
+
+class BridleRecord(RopeRecord):
+    """Bridle from a board to a wing tip."""
+
+    length_m: Length
+    segments: Annotated[int, Field(ge=2, le=200)]
+
+
+class FrameRopeRecord(RopeRecord):
+    """Rope of the frame, from wing tip to wing tip.
+
+    Without a length the hanging ratios of the net plan determine it.
+    """
+
+    length_m: Length | None = None
+
+
 class OwnMake(Record):
-    """Changes of a rope from the make of the bridles."""
+    """Properties in which a rope differs from the record ``bridle``."""
 
     diameter_m: Annotated[float, Field(gt=0, le=0.5)] | None = None
     weight_in_water_n_m: Weight | None = None
@@ -23,10 +58,10 @@ class OwnMake(Record):
 
 
 class SweepRecord(OwnMake):
-    """A rope on either side between backstrops and bridles.
+    """Rope on either side between backstrops and bridles.
 
-    Two backstrops of these lengths go from the board's upper and lower bridle point to its front
-    end; all bridles begin at its back end. All three are made as ``bridle`` says, but for what is
+    Two backstrops of these lengths lead from the board's upper and lower bridle point to its front
+    end; all bridles begin at its back end. All three have the properties of ``bridle`` except those
     given here.
     """
 
@@ -36,16 +71,16 @@ class SweepRecord(OwnMake):
 
     @property
     def changes(self) -> dict[str, float]:
-        """Values that are given here of the make of the bridle."""
+        """Values in which it differs from ``bridle``."""
         lengths = {'upper_backstrop_m', 'lower_backstrop_m'}
         return {k: v for k, v in self.model_dump(exclude=lengths).items() if v is not None}
 
 
 class OwnBridleRecord(OwnMake):
-    """A bridle on either side: from which of the board's points to which place of the net.
+    """Bridle on either side, from a point of the board to a place of the net.
 
-    It is made as ``bridle`` says, but for what is given here. ``side`` is the middle of the rope
-    between upper and lower wing tip. Behind a sweep none has a place at the board.
+    It has the properties of ``bridle`` except those given here. ``side`` is the middle of the rope
+    between upper and lower wing tip. Bridles behind a sweep have no place at the board.
     """
 
     name: Name
@@ -55,7 +90,7 @@ class OwnBridleRecord(OwnMake):
 
     @property
     def changes(self) -> dict[str, float]:
-        """Values that are given here of the make of the bridle."""
+        """Values in which it differs from ``bridle``."""
         places = {'name', 'at_board', 'at_net'}
         return {k: v for k, v in self.model_dump(exclude=places).items() if v is not None}
 
@@ -63,13 +98,12 @@ class OwnBridleRecord(OwnMake):
 class HungRecord(Record):
     """Weights, chain, floats or kites on a rope, spread evenly from one share of it to another.
 
-    Shares of a bridle or sweep count from the board to the net, those of headrope, footrope and
-    side ropes from port to starboard or from the top down. What hangs on a bridle, a sweep or a
-    side rope hangs there on either side; on headrope and footrope the figures are those of the
-    whole rope.
-    Figures in N/m are those of each metre of rope over which it is spread, as of a chain. Kites
-    have ``lift_area_m2``, C_L times their area, negative where they dive; their weight or buoyancy
-    may be left out.
+    Shares of a bridle or sweep count from the board to the net, those of headrope and footrope from
+    port to starboard, those of side ropes from the top down. Bodies on a bridle, a sweep or a side
+    rope are on either side; on headrope and footrope the numbers are those of the whole rope.
+    Numbers in N/m are per metre of the rope between both shares, as for a chain. Kites have
+    ``lift_area_m2``, C_L times their area, negative for depressors; they need no weight or
+    buoyancy.
     """
 
     name: str
@@ -95,25 +129,25 @@ class HungRecord(Record):
         found = sum(force > 0 for force in given)
         if found != 1 and not (found == 0 and self.lift_area_m2):
             raise ValueError(
-                'needs either weight_in_water_n or buoyancy_n, or one of them per metre (_n_m), '
-                f'or lift_area_m2, found {found} of them'
+                f'found {found} weights or buoyancies, expected one of weight_in_water_n, '
+                'buoyancy_n, weight_in_water_n_m and buoyancy_n_m, or lift_area_m2'
             )
         if self.to_share < self.from_share:
             raise ValueError(
-                f'to_share: found {self.to_share:g}, expected from_share, {self.from_share:g}, or '
-                'more'
+                f'to_share: found {self.to_share:g}, expected at least from_share, '
+                f'{self.from_share:g}'
             )
         low, high = (1100.0, 20_000.0) if self.sinks else (1.0, 950.0)
         if not low <= self.density <= high:
             raise ValueError(
-                f'density_kg_m3: found {self.density:g}, expected {low:g} to {high:g} for what '
-                f'{"sinks" if self.sinks else "floats"}'
+                f'density_kg_m3: found {self.density:g}, expected {low:g} to {high:g} for '
+                f'{"weights" if self.sinks else "floats"}'
             )
         return self
 
     @property
     def density(self) -> float:
-        """Density, kg/m³: that of steel, or of a float, where none is given."""
+        """Density, kg/m³; by default that of steel, or of a float."""
         if self.density_kg_m3 is not None:
             return self.density_kg_m3
         return 7800.0 if self.sinks else 300.0
@@ -124,7 +158,7 @@ class HungRecord(Record):
         return self.weight_in_water_n + self.weight_in_water_n_m > 0.0
 
     def force_on(self, length: float) -> float:
-        """Weight in water (N), negative for floats, on a rope of this length (m)."""
+        """Return the weight in water (N), negative for floats, on a rope of this length (m)."""
         per_metre = self.weight_in_water_n_m - self.buoyancy_n_m
         spread = length * (self.to_share - self.from_share)
         return self.weight_in_water_n - self.buoyancy_n + per_metre * spread

@@ -1,4 +1,4 @@
-"""Records of the sea in which a gear is towed: density, current and temperature by depth."""
+"""Records of the sea water: density, current and temperature by depth."""
 
 from itertools import pairwise
 from typing import Annotated
@@ -25,9 +25,10 @@ class TemperatureAt(Record):
 
 
 class WaterRecord(Record):
-    """The sea: density rises linearly with depth; current and temperature follow the given depths.
+    """Sea water; its density rises linearly with depth.
 
-    Temperature and salinity decide on the speed of sound, and not on the density.
+    Current and temperature are given at depths. Temperature and salinity determine the speed of
+    sound, but not the density.
     """
 
     density_kg_m3: Annotated[float, Field(ge=990, le=1060)]

@@ -1,4 +1,4 @@
-"""Twine of netting: fibres, and what follows from a twine's Rtex or diameter."""
+"""Twine of netting: fibres, and properties from a twine's Rtex or diameter."""
 
 from dataclasses import dataclass
 from math import pi, sqrt
@@ -7,8 +7,10 @@ from typing import Literal
 Material = Literal['PA', 'PES', 'PP', 'PE', 'UHMWPE']
 
 PA_DIAMETER = 0.038
-"""Diameter (mm) of a twine of polyamide over the root of its Rtex (g/km), as FAO tables have it;
-that of other fibres goes with the root of their volume."""
+"""Diameter (mm) of a twine of polyamide over the root of its Rtex (g/km), from FAO tables.
+
+That of other fibres goes with the root of their volume.
+"""
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,7 @@ FIBRES: dict[str, Fibre] = {
     'PE': Fibre(950.0, 1.5e9),
     'UHMWPE': Fibre(975.0, 3.0e10),
 }
-"""Densities are those of the fibres; moduli of twines are assumed, as those of the default gear."""
+"""Fibres by material, with densities of the fibres and assumed moduli of twines."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ class Twine:
         return pi / 4 * self.diameter**2
 
     def density(self, water: float) -> float:
-        """Density (kg/m³) of the whole section, full of water of this density."""
+        """Return the density (kg/m³) of the whole section, filled with water of this density."""
         fibres = self.tex / self.fibre.density
         return (self.tex + (self.section - fibres) * water) / self.section
 
@@ -51,8 +53,8 @@ class Twine:
 def twine_of(material: str, rtex: float | None, diameter: float | None) -> Twine:
     """Derive a twine from its Rtex (g/km), its diameter (m), or both.
 
-    A diameter alone is that of a twine whose fibres fill as much of it as those of a twine of
-    polyamide in FAO's tables do, three quarters.
+    A diameter without an Rtex is that of a twine whose fibres fill three quarters of it, as in the
+    FAO tables for polyamide.
     """
     fibre = FIBRES[material]
     # Millimetres per root of g/km.

@@ -8,14 +8,14 @@ from trawl_ros.records.samples import RangeSample
 
 
 def within_limits(distance: float, low: float, high: float) -> float:
-    """Return a distance (m), or ±infinity where it is out of the sensor's limits (REP-117)."""
+    """Return a distance (m), or ±infinity if it is beyond the sensor's limits (REP-117)."""
     if distance > high:
         return math.inf
     return -math.inf if distance < low else distance
 
 
 class RangeInstrument(Instrument[float, RangeSample]):
-    """Range sensor. Observes a distance (m) and reports it."""
+    """Range sensor; it observes a distance (m) and reports it."""
 
     def __init__(self, name: str, what: str, parameters: RangeParameters, draws: SeedPlan) -> None:
         super().__init__(name, parameters.timing(), {'distance': parameters.model()}, draws)

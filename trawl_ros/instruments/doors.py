@@ -1,4 +1,4 @@
-"""Door sensors: depth by pressure, inclinometers, acoustic spread."""
+"""Door sensors: pressure (depth), inclinometers, acoustic spread."""
 
 import math
 
@@ -17,23 +17,23 @@ from trawl_ros.records.truth import SIDES, DoorTruth, Truth
 Doors = tuple[DoorTruth, DoorTruth]
 
 _OUTWARD = (1.0, -1.0)
-"""The way (along y of the door frame) in which each door's outer face looks, port first."""
+"""Direction of each door's outer face along y of the door frame, port first."""
 
 
 def door_tilt(orientation: FloatArray) -> tuple[float, float]:
-    """Read pitch (nose down positive) and roll (top to starboard positive) off a pose, rad.
+    """Return pitch (nose down positive) and roll (top to starboard positive) of a pose, rad.
 
-    ``orientation`` is the quaternion (x, y, z, w) of a frame x forward, y port, z up. The
-    angles are those against gravity, so the heading does not enter.
+    ``orientation`` is the quaternion (x, y, z, w) of a frame x forward, y port, z up. Angles are
+    relative to gravity and do not depend on the heading.
     """
     x, y, z, w = np.asarray(orientation, dtype=float) / np.linalg.norm(orientation)
-    # The vertical in the frame's own axes is all that an inclinometer feels.
+    # An inclinometer measures the vertical in its own axes.
     up = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
     return math.atan2(-up[0], math.hypot(up[1], up[2])), math.atan2(up[1], up[2])
 
 
 def off_axis(doors: Doors) -> float:
-    """Return the larger angle (rad) between a door's inward normal and the way to the other."""
+    """Return the larger angle (rad) between a door's inward normal and the line to the other."""
     port, starboard = (door.position for door in doors)
     worst = 0.0
     for door, way, outward in zip(
@@ -47,7 +47,7 @@ def off_axis(doors: Doors) -> float:
 
 
 class DoorAttitude(Instrument[FloatArray, AttitudeSample]):
-    """Inclinometer of a door. Observes the door's orientation, a quaternion (4,)."""
+    """Inclinometer of a door; it observes the door's orientation, a quaternion (4,)."""
 
     def __init__(self, side: str, parameters: AngleParameters, draws: SeedPlan) -> None:
         errors = {'pitch': parameters.model(), 'roll': parameters.model()}
@@ -66,10 +66,10 @@ class DoorAttitude(Instrument[FloatArray, AttitudeSample]):
 
 
 class DoorSpread(Instrument[Doors, RangeSample]):
-    """Acoustic spread sensor from door to door. Observes both doors, port first.
+    """Acoustic spread sensor from door to door; it observes both doors, port first.
 
-    Sound takes its time by the speed it has there, and that time is turned into metres by the
-    speed that was set. When the doors turn away from each other there is no sample.
+    The travel time follows from the speed of sound at the doors and is converted with the assumed
+    speed. There is no sample if a door is outside the other's beam.
     """
 
     def __init__(

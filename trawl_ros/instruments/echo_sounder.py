@@ -16,12 +16,14 @@ from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import SchoolTruth, Truth
 
 RINGS, RAYS_PER_RING = 4, 12
+"""Rings of rays that sample the beam, and rays on each."""
 
 
 @dataclass(frozen=True)
 class Below:
-    """Surroundings of the keel: its place ``keel`` (3,) in ``map``, the ``seabed``'s depth (m below
-    the mean surface) and the schools of fish.
+    """Surroundings of the keel: its position ``keel`` (3,) in ``map``, seabed and schools of fish.
+
+    ``seabed`` is the depth below the mean surface, m.
     """
 
     keel: FloatArray
@@ -35,7 +37,7 @@ class Below:
 
 
 def cone(half_angle: float) -> FloatArray:
-    """Return unit vectors (n, 3) that fill a cone about straight down, evenly from its axis out."""
+    """Return unit vectors (n, 3) that fill a downward cone, evenly spaced in angle."""
     tilts = np.repeat(np.arange(1, RINGS + 1) / RINGS * half_angle, RAYS_PER_RING)
     around = np.tile(np.arange(RAYS_PER_RING) / RAYS_PER_RING * 2 * math.pi, RINGS)
     rays = np.column_stack(
@@ -45,9 +47,9 @@ def cone(half_angle: float) -> FloatArray:
 
 
 class _Sounding(Instrument[Below, RangeSample]):
-    """Sounding: a distance down from the keel, by the travel time of sound.
+    """Sounding: a distance down from the keel by the travel time of sound.
 
-    That time is turned into metres by the speed of sound that was set.
+    The travel time is converted with the assumed speed of sound.
     """
 
     def __init__(
@@ -67,7 +69,7 @@ class _Sounding(Instrument[Below, RangeSample]):
 
     @abstractmethod
     def _distance(self, part: Below) -> float:
-        """True distance, m; infinite where there is nothing."""
+        """Return the true distance, m; infinite if there is nothing."""
 
     def _read(self, part: Below, stamp: int) -> RangeSample:
         distance = self._distance(part)
@@ -90,7 +92,7 @@ class DepthSounding(_Sounding):
 class SchoolSounding(_Sounding):
     """Sounding of the nearest fish in the beam, above the seabed.
 
-    ``half_angle`` is that of the beam, rad.
+    ``half_angle`` is half of the beam's width, rad.
     """
 
     def __init__(
@@ -117,7 +119,7 @@ class SchoolSounding(_Sounding):
 
 
 class EchoSounder:
-    """Echo sounder with both soundings. ``draught`` (m) is that of the keel."""
+    """Echo sounder with both soundings; ``draught`` is that of the keel, m."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""Fish sonar of the ship: sweeps of a sector ahead, with the schools in it."""
+"""Fish sonar of the ship: sweeps of a sector ahead and the schools in it."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
-from trawl_ros.instruments.errors.random_streams import generator
+from trawl_ros.instruments.errors.random_processes import generator
 from trawl_ros.instruments.parameters import FishSonarParameters
 from trawl_ros.instruments.sonar.absorption import absorption
 from trawl_ros.instruments.sonar.schools import fish_in
@@ -15,25 +15,25 @@ from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import SchoolTruth, VesselTruth
 
 Around = tuple[VesselTruth, tuple[SchoolTruth, ...]]
-"""The ship and the schools around her."""
+"""Ship, and the schools around her."""
 
 
 class FishSonar(Instrument[Around, SchoolsSample]):
-    """Fish sonar. Observes ship and schools, `Around`; reports a sample per sweep.
+    """Fish sonar; it observes ship and schools, `Around`, and reports a sample per sweep.
 
-    A school can be seen when the middle of it is within range and sector and some of it in the
-    beam, which is tilted down. Whether it is seen is drawn for each school and sweep, by how
-    strong its echo is (`echo_level`): with a probability of 1 / (1 + exp((L₅₀ − L) / fading), one
-    half at the level L₅₀. What is seen has no name, and comes in the order of its range.
+    A school can be detected if its centre is within range and sector and a part of it is in the
+    tilted beam. Detection is random for each school and sweep. Its probability depends on the echo
+    level L (`echo_level`): 1 / (1 + exp((L₅₀ − L) / fading)), one half at the level L₅₀. Schools
+    are reported without identity, in the order of their ranges.
 
     Parameters
     ----------
     parameters
-        From the instrument file.
+        Parameters from the instrument file.
     draught
-        Depth of the sonar under the keel, m.
+        Depth of the sonar below the towing blocks, m.
     surroundings
-        The water, for absorption and speed of sound.
+        Water, with its absorption and speed of sound.
     draws
         Seed and changes of state.
     """
@@ -57,10 +57,10 @@ class FishSonar(Instrument[Around, SchoolsSample]):
         super().__init__('vessel/fish_sonar', parameters.timing(), errors, draws)
 
     def echo_level(self, school: SchoolTruth, distance: float, depth: float) -> float:
-        """Echo level of a school, dB, of a source of 0 dB.
+        """Return the echo level of a school for a source of 0 dB, dB.
 
-        TS + 10 log N − 40 log r − 2 α r: all N fish echo with the target strength TS, sound
-        spreads as on a sphere and is absorbed on both ways.
+        TS + 10 log N − 40 log r − 2 α r: all N fish have the target strength TS. Sound spreads
+        spherically and is absorbed on both ways.
         """
         record, water = self._parameters, self._surroundings
         loss = absorption(
@@ -76,12 +76,12 @@ class FishSonar(Instrument[Around, SchoolsSample]):
         vessel, schools = part
         rows = [self._seen(vessel, school, stamp) for school in schools]
         seen = np.array([row for row in rows if row is not None]).reshape(-1, 3)
-        # A quantity that is lost leaves nothing to show.
+        # A lost quantity leaves no position.
         seen = seen[np.isfinite(seen).all(1)]
         return SchoolsSample(stamp, seen[np.argsort(np.linalg.norm(seen, axis=1))])
 
     def _seen(self, vessel: VesselTruth, school: SchoolTruth, stamp: int) -> FloatArray | None:
-        """Measured position of a school in frame ``vessel``; None if it is not detected."""
+        """Return the measured position of a school in frame ``vessel``; None if not detected."""
         record = self._parameters
         sonar = np.array([0.0, 0.0, -self._draught])
         east, north, up = school.position - vessel.position
@@ -94,7 +94,7 @@ class FishSonar(Instrument[Around, SchoolsSample]):
         stretch = record.assumed_sound_speed_m_s / self._surroundings.mean_sound_speed(
             depth, depth - z
         )
-        # Drawn whether it is seen or not: no school changes what is drawn for another.
+        # Drawn for undetected schools too, so that one school does not change another's errors.
         shown_range = self._measure('range', stretch * distance, stamp)
         shown_bearing = self._measure('bearing', bearing, stamp)
         shown_tilt = self._measure('tilt', tilt, stamp)
@@ -108,7 +108,7 @@ class FishSonar(Instrument[Around, SchoolsSample]):
         ):
             return None
         excess = self.echo_level(school, distance, depth) - record.half_seen_db
-        # The logistic function, in a form that does not overflow.
+        # Logistic function, in a form that does not overflow.
         if lucky > 0.5 * (1.0 + math.tanh(0.5 * excess / record.fading_db)):
             return None
         ahead = shown_range * math.cos(shown_tilt)

@@ -1,4 +1,4 @@
-"""Sensors that do nothing but measure observables of the gear: all of them by their rows."""
+"""Sensors that only measure observables of the gear, all built from their rows."""
 
 from collections.abc import Iterable
 
@@ -10,7 +10,7 @@ from trawl_ros.records.samples import Sample
 
 
 class ObservingInstrument(Instrument[Observables, Sample]):
-    """Sensor of observables. Observes all, and reports those of its channels."""
+    """Sensor of observables; it observes all of them and reports those of its channels."""
 
     def __init__(self, row: Sensor[Sample], parameters: ByUnit, draws: SeedPlan) -> None:
         errors = {field.name: parameters.model() for field in row.fields}
@@ -30,16 +30,16 @@ class ObservingInstrument(Instrument[Observables, Sample]):
 
 
 class ObservingInstruments:
-    """Sensors of some nodes that do nothing but measure observables.
+    """Sensors of some nodes that only measure observables.
 
     Parameters
     ----------
     parameters
-        Of all instruments; a sensor without any is not aboard.
+        Parameters of all instruments; a sensor without parameters is not aboard.
     draws
         Seed and changes of state.
     nodes
-        Names.
+        Names of the nodes.
     """
 
     def __init__(

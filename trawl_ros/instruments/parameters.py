@@ -11,7 +11,7 @@ from trawl_ros.core.errors import InstrumentError, TrawlError
 from trawl_ros.core.resources import packaged, share_path
 from trawl_ros.core.schema import Record, load_yaml, validated
 from trawl_ros.instruments.errors.channel import ErrorModel
-from trawl_ros.instruments.errors.false_echoes import FalseEchoModel
+from trawl_ros.instruments.errors.random_processes import FalseEchoModel
 from trawl_ros.instruments.errors.records import (
     AngleErrors,
     ForceErrors,
@@ -22,6 +22,7 @@ from trawl_ros.instruments.errors.records import (
     SoundSpeed,
     SpeedErrors,
     TurnErrors,
+    both_or_neither,
 )
 from trawl_ros.instruments.errors.timing import Sent, Timed
 from trawl_ros.instruments.sonar.records import SweepRecord
@@ -32,15 +33,15 @@ BASE = 'base'
 
 
 class AngleParameters(AngleErrors, Timed):
-    """Sensor of angles, which err alike and independently."""
+    """Sensor of angles, with equal and independent errors."""
 
 
 class LengthParameters(LengthErrors, Timed):
-    """Sensor of lengths, which err alike and independently."""
+    """Sensor of lengths, with equal and independent errors."""
 
 
 class ForceParameters(ForceErrors, Timed):
-    """Sensor of forces, which err alike and independently."""
+    """Sensor of forces, with equal and independent errors."""
 
 
 ByUnit = AngleParameters | LengthParameters | ForceParameters
@@ -49,7 +50,7 @@ BY_UNIT: dict[str, type[ByUnit]] = {
     'm': LengthParameters,
     'N': ForceParameters,
 }
-"""Errors of sensors that do nothing but measure observables, by the unit of their channels."""
+"""Errors of sensors that only measure observables, by the unit of their channels."""
 
 GROUPS = {
     'winch_node': 'winch',
@@ -63,12 +64,12 @@ RecordT = TypeVar('RecordT', bound=Record)
 
 
 def observing(node: str) -> tuple[Sensor[Sample], ...]:
-    """Return the sensors of a node that do nothing but measure observables."""
+    """Return the sensors of a node that only measure observables."""
     return tuple(row for row in INSTRUMENTS if row.errors and node in row.published_by)
 
 
 def _with_observing(node: str) -> Callable[[type[RecordT]], type[RecordT]]:
-    """Add the errors of the sensors of a node that do nothing but measure observables."""
+    """Add the errors of the sensors of a node that only measure observables."""
     keys = {
         row.errors: (BY_UNIT[row.fields[0].channel.unit] | None, None)
         for row in observing(node)
@@ -87,12 +88,11 @@ def _with_observing(node: str) -> Callable[[type[RecordT]], type[RecordT]]:
 
 @_with_observing('winch_node')
 class WinchParameters(Timed):
-    """Winches: counter, pay-out speed and load cell; sides err independently.
+    """Winches: counter, pay-out speed and load cell; errors of both sides are independent.
 
-    The counting wheel counts wire as it is stretched when it passes: by its tension over
-    ``wire_stiffness_mn``, beyond what the counter was calibrated with, ``calibrated_at_kn``. The
-    load cell lags by friction: it follows the tension only once that has moved by
-    ``hysteresis_kn``.
+    The counting wheel counts stretched wire. Its error is the tension in excess of
+    ``calibrated_at_kn``, the tension of its calibration, over ``wire_stiffness_mn``. The load cell
+    has friction: it follows the tension only after a change of ``hysteresis_kn``.
     """
 
     length: LengthErrors
@@ -126,11 +126,10 @@ class LimitedLength(LengthErrors):
 class RangeParameters(LimitedLength, Timed):
     """Acoustic range sensor.
 
-    A share ``reflection_share`` of its readings are of echoes that came a longer way, by
-    ``reflection_m`` in the mean, ``reflection_run`` of them in a row; a share
-    ``ambiguity_share`` is taken for ``ambiguity_m`` more than it is, for it is heard in the
-    next period of the ranging, ``ambiguity_run`` of them in a row; a share ``double_share`` is
-    that of sound which went there and back twice, ``double_run`` of them in a row.
+    It has three kinds of false echoes, each with its share of the readings and its mean number of
+    readings in a row (``_run``). Reflections travel a longer path, by ``reflection_m`` on average.
+    Ambiguous readings are received in the next period of the ranging and are ``ambiguity_m`` too
+    long. Double echoes travel there and back twice.
     """
 
     reflection_share: Share = 0.0
@@ -145,12 +144,7 @@ class RangeParameters(LimitedLength, Timed):
     @model_validator(mode='after')
     def _false_echoes_have_a_size(self) -> 'RangeParameters':
         for kind in ('reflection', 'ambiguity'):
-            share, metres = getattr(self, f'{kind}_share'), getattr(self, f'{kind}_m')
-            if (share > 0) != (metres > 0):
-                raise ValueError(
-                    f'{kind}_share: found {share:g} with {kind}_m {metres:g}, expected both or '
-                    'neither'
-                )
+            both_or_neither(**{key: getattr(self, key) for key in (f'{kind}_share', f'{kind}_m')})
         return self
 
     def model(self) -> ErrorModel:
@@ -176,9 +170,9 @@ class VelocityParameters(Timed):
 class SpreadParameters(RangeParameters):
     """Acoustic spread sensor from door to door.
 
-    A time of flight is turned into metres with ``assumed_sound_speed_m_s``, whatever that of the
-    water is. Each door looks inward along its own normal, and hears nothing once the other is
-    more than ``beam_half_angle_deg`` off.
+    Travel times are converted with ``assumed_sound_speed_m_s``, whatever the speed of sound in the
+    water is. The beam of each door points inward along its normal. There is no reading if the other
+    door is more than ``beam_half_angle_deg`` off the beam.
     """
 
     assumed_sound_speed_m_s: SoundSpeed | None = None
@@ -187,7 +181,7 @@ class SpreadParameters(RangeParameters):
 
 @_with_observing('door_sensor_node')
 class DoorParameters(Record):
-    """Sensors of the doors, alike on both."""
+    """Sensors of the doors, the same on both."""
 
     pressure: PressureParameters
     attitude: AngleParameters
@@ -195,31 +189,31 @@ class DoorParameters(Record):
 
 
 class SweepParameters(SweepRecord, Timed):
-    """Trawl sonar's sweeps: ``rate_hz`` of them per second, one begins as another ends."""
+    """Sweeps of the trawl sonar, ``rate_hz`` per second; each begins as the last one ends."""
 
     @model_validator(mode='after')
     def _time_to_listen(self) -> 'SweepParameters':
         needed = self.beams * self.listening_s * self.rate_hz
         if needed > 1 + 1e-9:
             raise ValueError(
-                f'rate_hz: found {self.rate_hz:g}, expected {self.rate_hz / needed:.3g} at most: '
-                f'{self.beams} pings of {self.listening_s:.3g} s each, until echoes are back from '
+                f'rate_hz: found {self.rate_hz:g}, expected at most {self.rate_hz / needed:.3g}: '
+                f'each of the {self.beams} pings waits {self.listening_s:.3g} s for echoes from '
                 'max_range_m'
             )
         return self
 
 
 class OpeningParameters(LimitedLength, Sent):
-    """Opening as it is read off each image: errors beside those that the image brings.
+    """Opening as read from each image: errors in addition to those of the image.
 
-    ``stated_std_m`` is what is said of the reading's error, all in all.
+    ``stated_std_m`` is the stated error of the reading, including that of the image.
     """
 
 
 class BottomParameters(RangeParameters):
-    """Sounder that looks down from the headrope.
+    """Sounder that points down from the headrope.
 
-    Times of flight are turned into metres with ``assumed_sound_speed_m_s``.
+    Travel times are converted with ``assumed_sound_speed_m_s``.
     """
 
     assumed_sound_speed_m_s: SoundSpeed
@@ -237,10 +231,10 @@ class SonarParameters(Record):
 
 
 class EchoSounderParameters(Record):
-    """Echo sounder under the keel: down to the seabed, and to the nearest fish in its beam.
+    """Echo sounder under the keel: distances to the seabed and to the nearest fish in its beam.
 
-    Times of flight are turned into metres with ``assumed_sound_speed_m_s``; the beam is
-    ``beam_width_deg`` wide in all.
+    Travel times are converted with ``assumed_sound_speed_m_s``; ``beam_width_deg`` is the full
+    width of the beam.
     """
 
     assumed_sound_speed_m_s: SoundSpeed
@@ -250,14 +244,14 @@ class EchoSounderParameters(Record):
 
 
 class FishSonarParameters(Timed):
-    """Fish sonar: a sweep over ``sector_deg`` in all, half of it to either side of ahead.
+    """Fish sonar: sweeps over ``sector_deg`` centred on the heading.
 
-    The beam looks down by ``beam_tilt_deg`` and is ``beam_width_deg`` high. ``range``,
-    ``bearing`` and ``tilt`` are the errors with which a school is placed.
+    The beam is tilted down by ``beam_tilt_deg`` and is ``beam_width_deg`` high. ``range``,
+    ``bearing`` and ``tilt`` are the errors of the position of a school.
 
-    ``fish_target_strength_db`` is that of one fish; of schools whose echo is as strong as
-    ``half_seen_db`` (of a source of 0 dB) half are seen, and ``fading_db`` says how soon more of
-    them are as it grows: with one ``fading_db`` more 73 %, with three more 95 %.
+    ``fish_target_strength_db`` is that of one fish. Half of the schools with an echo of
+    ``half_seen_db`` (for a source of 0 dB) are detected, 73 % with one ``fading_db`` more, and 95 %
+    with three ``fading_db`` more.
     """
 
     assumed_sound_speed_m_s: SoundSpeed
@@ -279,8 +273,7 @@ class FishSonarParameters(Timed):
 class VesselParameters(Record):
     """Sensors of the ship, and the datum of ``map``.
 
-    Her keel, with the echo sounder and the fish sonar under it, is ``draught_m`` below the
-    towing blocks.
+    The keel, which carries echo sounder and fish sonar, is ``draught_m`` below the towing blocks.
     """
 
     datum_lat_deg: Annotated[float, Field(ge=-89, le=89)]
@@ -309,8 +302,8 @@ def load_instruments(path: str | Path = 'default') -> InstrumentParameters:
     Parameters
     ----------
     path
-        A file that ends in ``.yaml``, or the name of a set that comes with the package. A file
-        with the key ``base`` names a set of the package and says only what differs from it.
+        A file that ends in ``.yaml``, or the name of a set in the package. A file with the key
+        ``base`` names a set of the package and has only the keys that differ from it.
 
     Returns
     -------
@@ -320,7 +313,7 @@ def load_instruments(path: str | Path = 'default') -> InstrumentParameters:
     Raises
     ------
     InstrumentError
-        Naming file, key, what was found and what was expected.
+        If the file is missing or a value is wrong; it names file, key, found and expected values.
 
     Examples
     --------
@@ -348,9 +341,9 @@ def default_instruments_with(
     Parameters
     ----------
     overrides
-        Nested as the file is, with those keys only that differ.
+        Keys that differ, nested as in the file.
     path, prefix
-        File and key where the overrides stand, for the error.
+        File and key of the overrides, for the error.
     error
         Class of the error to raise.
     """

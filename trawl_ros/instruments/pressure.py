@@ -7,9 +7,9 @@ from trawl_ros.records.surroundings import PressureAt
 
 
 class PressureInstrument(Instrument[float, PressureSample]):
-    """Pressure sensor. Observes its depth (m, positive down) and reports absolute pressure.
+    """Pressure sensor; it observes its depth (m, positive down) and reports absolute pressure.
 
-    Above the surface it reports the pressure there.
+    Above the surface it reports the pressure at the surface.
     """
 
     def __init__(
@@ -25,7 +25,7 @@ class PressureInstrument(Instrument[float, PressureSample]):
         self._pressure_at = pressure_at
 
     def _read(self, part: float, stamp: int) -> PressureSample:
-        # Comparing this way round keeps NaN: an unknown depth is no surface reading.
+        # This comparison keeps NaN: an unknown depth must not become a reading at the surface.
         depth = 0.0 if part < 0.0 else part
         pressure = self._measure('pressure', float(self._pressure_at(depth)), stamp)
         return PressureSample(stamp, self._place, pressure, self._stated_std('pressure'))

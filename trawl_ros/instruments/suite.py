@@ -1,4 +1,4 @@
-"""Suite of all instruments of a ship, in the four groups that are nodes in the graph."""
+"""Suite of all instruments of a ship, in four groups; each group is one node of the graph."""
 
 from collections.abc import Sequence
 
@@ -17,18 +17,18 @@ from trawl_ros.records.truth import Truth
 
 
 class InstrumentSuite:
-    """Suite of all instruments; a group on its own gives the very same samples.
+    """Suite of all instruments; a group alone gives the same samples.
 
     Parameters
     ----------
     parameters
-        From `load_instruments`.
+        Parameters from `load_instruments`.
     surroundings
-        The water around the sensors.
+        Water around the sensors.
     draws
         Seed and changes of state.
     faults
-        Faults that come and go.
+        Planned faults.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Trawl sonar on the headrope: its image, the readings off it, and the sensors in its housing."""
+"""Trawl sonar on the headrope: its image, readings from the image, and sensors in its housing."""
 
 import math
 
@@ -7,10 +7,8 @@ import numpy as np
 from trawl_ros.core.arrays import ByteArray, FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.distance import RangeInstrument, within_limits
-from trawl_ros.instruments.errors.bursts import BurstModel, Bursts
-from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
-from trawl_ros.instruments.errors.random_streams import generator
-from trawl_ros.instruments.errors.sampling import TOLERANCE
+from trawl_ros.instruments.errors.instrument import STAMP_TOLERANCE_NS, Instrument, SeedPlan
+from trawl_ros.instruments.errors.random_processes import BurstModel, Bursts, generator
 from trawl_ros.instruments.parameters import (
     BottomParameters,
     OpeningParameters,
@@ -34,21 +32,21 @@ from trawl_ros.records.truth import NetTruth, Truth
 
 
 class TrawlSonar(Instrument[Truth, Sweep]):
-    """Scanning sonar. Observes net, schools and seabed; reports a sweep when it is complete.
+    """Scanning sonar; it observes net, schools and seabed and reports complete sweeps.
 
-    Its beams ping one after the other all through the sweep, and each meets what passes through
-    the sonar's plane at its own time. A sweep ends when the next one begins; one that is cut
-    short has rows that stay black.
+    The beams ping one after the other during the sweep. Each receives the echoes of what is in the
+    sonar's plane at its own time. A sweep ends when the next one begins; rows without a ping stay
+    black.
 
-    Its quantities are ``gain``, dB too much, and ``angle``, by which the beams look more to port
-    than they say. With either frozen the screen hangs and shows the image before.
+    Its quantities are ``gain``, the excess gain in dB, and ``angle``, the error of the beams'
+    direction to port. If either is frozen the screen hangs and shows the last image.
 
     Parameters
     ----------
     parameters
-        From the instrument file.
+        Parameters from the instrument file.
     surroundings
-        The water, for the speed of sound and its absorption.
+        Water, with its speed of sound and absorption.
     draws
         Seed and changes of state.
     """
@@ -66,7 +64,7 @@ class TrawlSonar(Instrument[Truth, Sweep]):
         self._restart()
 
     def observe(self, part: Truth, stamp: int) -> list[Sweep]:
-        """Observe the truth; pings since the last one meet what is there now."""
+        """Observe the truth; pings since the last call receive echoes from the present truth."""
         self._ping(part, stamp)
         sweeps = super().observe(part, stamp)
         self._ping(part, stamp)
@@ -96,13 +94,13 @@ class TrawlSonar(Instrument[Truth, Sweep]):
         if self._begin is None:
             return
         interval = self.sweep_s / self._grid.beams
-        due = 1 + math.floor((stamp + TOLERANCE - self._begin) / SECOND / interval)
+        due = 1 + math.floor((stamp + STAMP_TOLERANCE_NS - self._begin) / SECOND / interval)
         for row in range(len(self._pings), min(due, self._grid.beams)):
             angle = float(self._grid.angles[row]) + self._off
             self._pings.append(_ping(part, angle if math.isfinite(angle) else 0.0))
 
     def _complete(self) -> Sweep | None:
-        """Sweep of the pings made so far."""
+        """Return the sweep of the pings made so far."""
         if self._begin is None or not self._pings:
             return None
         image = image_of(
@@ -110,12 +108,12 @@ class TrawlSonar(Instrument[Truth, Sweep]):
             self._begin,
             self._parameters,
             self.sweep_s / self._grid.beams,
-            # A head that has lost its angle puts nothing anywhere.
+            # Without a known angle the echoes cannot be placed in the image.
             self._gain if math.isfinite(self._off) else math.nan,
             self._surroundings,
             self._luck,
         )
-        # Asked first, so that its spells go on whatever faults there are.
+        # The random process comes first: it must advance whether or not there are faults.
         hangs = self._hangs.on(self._begin) or self._is_frozen()
         if hangs and self._shown is not None:
             image = self._shown
@@ -141,7 +139,7 @@ def _ping(truth: Truth, angle: float) -> Ping:
 
 
 def _axes(net: NetTruth) -> FloatArray:
-    """Axes x, y, z of frame ``sonar`` in ``map`` as columns."""
+    """Return the axes x, y, z of frame ``sonar`` in ``map`` as columns."""
     x, y, z, w = net.sonar_orientation
     return np.array(
         [
@@ -153,10 +151,10 @@ def _axes(net: NetTruth) -> FloatArray:
 
 
 class SonarOpening(Instrument[tuple[int, float] | None, RangeSample]):
-    """Opening of the net as it is read off an image.
+    """Opening of the net as read from an image.
 
-    Sees the stamp (ns) of the image and the opening (m), NaN where it cannot be read, or None
-    when there is no new image. ``what`` is 'opening_height' or 'opening_width'.
+    It observes the stamp (ns) of the image and the opening (m), NaN if it cannot be read, or None
+    if there is no new image. ``what`` is 'opening_height' or 'opening_width'.
     """
 
     def __init__(self, what: str, parameters: OpeningParameters, draws: SeedPlan) -> None:
@@ -175,7 +173,7 @@ class SonarOpening(Instrument[tuple[int, float] | None, RangeSample]):
 
 
 class SonarBottom(RangeInstrument):
-    """Sounder that looks down from the headrope. Observes the seabed below it (m)."""
+    """Sounder that points down from the headrope and observes its altitude (m)."""
 
     def __init__(
         self, parameters: BottomParameters, surroundings: Surroundings, draws: SeedPlan
@@ -185,7 +183,7 @@ class SonarBottom(RangeInstrument):
         self._surroundings = surroundings
 
     def look(self, truth: Truth) -> list[RangeSample]:
-        """Observe the truth through the water there is."""
+        """Observe the truth with the speed of sound of the water."""
         depth, seabed = truth.net.headrope_depth, truth.seabed.under_headrope
         below = seabed - depth
         if math.isfinite(below):

@@ -1,4 +1,4 @@
-"""Sensors of the ship: speed log, GPS, compass; sounder and sonar have files of their own."""
+"""Sensors of the ship: speed log, GPS, compass; with echo sounder and fish sonar."""
 
 import math
 
@@ -21,7 +21,7 @@ from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import Truth
 
 Moving = tuple[FloatArray, float]
-"""A velocity (3,) in m/s and the rate of turn in rad/s."""
+"""Velocity (3,) in m/s and rate of turn in rad/s."""
 
 
 class _Velocity(Instrument[Moving, VelocitySample]):
@@ -47,21 +47,21 @@ class _Velocity(Instrument[Moving, VelocitySample]):
 
 
 class SpeedLog(_Velocity):
-    """Two-axis speed log with a rate-of-turn indicator. Observes velocity through the water."""
+    """Two-axis speed log with a rate-of-turn indicator; it observes velocity through the water."""
 
     def __init__(self, parameters: VelocityParameters, draws: SeedPlan) -> None:
         super().__init__('water', parameters, draws)
 
 
 class GpsVelocity(_Velocity):
-    """GPS velocity over ground with the rate of turn. Observes velocity in ``map``, `Moving`."""
+    """GPS velocity over ground with the rate of turn; it observes `Moving` in ``map``."""
 
     def __init__(self, parameters: VelocityParameters, draws: SeedPlan) -> None:
         super().__init__('ground', parameters, draws)
 
 
 class GpsFix(Instrument[FloatArray, FixSample]):
-    """GPS position on Earth. Observes the ship's position (3,) in ``map``."""
+    """GPS position on Earth; it observes the ship's position (3,) in ``map``."""
 
     def __init__(self, parameters: LengthParameters, datum: Datum, draws: SeedPlan) -> None:
         errors = {'east': parameters.model(), 'north': parameters.model()}
@@ -81,7 +81,7 @@ class GpsFix(Instrument[FloatArray, FixSample]):
 
 
 class Heading(Instrument[float, HeadingSample]):
-    """Compass. Observes the heading as ENU yaw (rad) and reports it within ±π."""
+    """Compass; it observes the heading as ENU yaw (rad) and reports it within ±π."""
 
     def __init__(self, parameters: AngleParameters, draws: SeedPlan) -> None:
         super().__init__(
@@ -96,7 +96,7 @@ class Heading(Instrument[float, HeadingSample]):
 
 
 class VesselInstruments:
-    """Instruments of the ship herself, but for her winches."""
+    """Instruments of the ship except those of the winches."""
 
     def __init__(
         self, parameters: VesselParameters, draws: SeedPlan, *, surroundings: Surroundings

@@ -1,4 +1,4 @@
-"""Instruments of the winches: counter, pay-out speed and load cell of both."""
+"""Instruments of the winches: counters, pay-out speeds and load cells."""
 
 import math
 
@@ -9,14 +9,14 @@ from trawl_ros.records.truth import SIDES, Truth, WinchTruth
 
 
 class CountingWheel:
-    """Counting wheel: counts the wire that passes, as far as tension has stretched it by then.
+    """Counting wheel: counts the wire that passes, stretched by its tension.
 
     Parameters
     ----------
     stiffness
-        EA of the wire, N; None where it does not stretch.
+        EA of the wire, N; None if it does not stretch.
     calibrated_at
-        Tension (N) under which a metre counted is a metre of slack wire.
+        Tension (N) at which a counted metre is a metre of unstretched wire.
     """
 
     def __init__(self, stiffness: float | None, calibrated_at: float) -> None:
@@ -26,11 +26,11 @@ class CountingWheel:
         self._before = 0.0
 
     def count(self, length: float, tension: float) -> float:
-        """Return the metres counted with ``length`` (m, unstretched) out under ``tension`` (N)."""
+        """Return the counted length (m) at an unstretched ``length`` (m) and ``tension`` (N)."""
         if self._stiffness is None:
             return length
         stretch = 1.0 + (tension - self._calibrated_at) / self._stiffness
-        # Set to zero by the marks on the wire before the tow, under what it bore then.
+        # The counter is set by the marks on the wire before the tow, so it starts without error.
         if self._counted is None or not math.isfinite(self._counted):
             self._counted = length
         else:
@@ -40,7 +40,7 @@ class CountingWheel:
 
 
 class LoadCell:
-    """Load cell with friction, which holds the force back by up to ``play`` (N) either way."""
+    """Load cell with friction: its force lags the tension by up to ``play`` (N)."""
 
     def __init__(self, play: float) -> None:
         self._play = play
@@ -54,7 +54,7 @@ class LoadCell:
 
 
 class WinchInstrument(Instrument[tuple[WinchTruth, WinchTruth], WinchSample]):
-    """Instrument of both winches, port first, reported in one sample."""
+    """Instrument of both winches, port first, which reports one sample for both."""
 
     def __init__(self, parameters: WinchParameters, draws: SeedPlan) -> None:
         quantities = {
@@ -77,7 +77,7 @@ class WinchInstrument(Instrument[tuple[WinchTruth, WinchTruth], WinchSample]):
         self._cells = [LoadCell(1e3 * record.hysteresis_kn) for _ in SIDES]
 
     def observe(self, part: tuple[WinchTruth, WinchTruth], stamp: int) -> list[WinchSample]:
-        """Observe both winches: wheels and cells work between samples too."""
+        """Observe both winches; wheels and cells follow the truth between samples too."""
         samples = super().observe(part, stamp)
         self._turn(part)
         return samples

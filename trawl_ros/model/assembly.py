@@ -1,7 +1,7 @@
-"""Assembly of all forces on the gear, with its exact Jacobian and its mass matrix.
+"""Assembly of all forces on the gear, their exact Jacobian, and the mass matrix.
 
 `forces` is the whole right-hand side of eq. 15, 25 and 29 as a function of state, towing
-boundary and parameters; it accepts complex arguments. `linearised` gives the same
+boundary and parameters; it accepts complex arguments. `linearised` returns the same
 forces with K = -∂F/∂q and C = -∂F/∂v on the model's sparsity pattern: bars analytically
 (`bar.pull_slopes_at`, `bar.load_slopes_at`), boards and kite by the complex step, which is exact
 to rounding.
@@ -34,7 +34,7 @@ from trawl_ros.model.state import State, Tow
 
 
 def rest_lengths(model: GearModel, tow: Tow) -> tuple[FloatArray, FloatArray]:
-    """Unstretched lengths of all bars and their rates; a warp is cut into equal bars."""
+    """Return the unstretched lengths of all bars and their rates; bars of a warp are equal."""
     lengths = tow.lengths / model.warp_segments
     rest = model.rest.astype(lengths.dtype)
     rate = np.zeros(len(rest), np.result_type(tow.length_rates, 0.0))
@@ -46,8 +46,10 @@ def rest_lengths(model: GearModel, tow: Tow) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True)
 class Points:
-    """Positions and velocities (p, 3) of nodes, fastening points and blocks; ``arms``
-    (2, 3, 3) from the boards' centres of gravity to their fastening points, fixed axes.
+    """Positions and velocities (p, 3) of nodes, fastening points and blocks.
+
+    ``arms`` (2, 3, 3) lead from the boards' centres of gravity to their fastening points, in fixed
+    axes.
     """
 
     positions: FloatArray
@@ -56,7 +58,7 @@ class Points:
 
 
 def points_of(model: GearModel, state: State, tow: Tow) -> Points:
-    """Positions and velocities of all points at which bars can end."""
+    """Return positions and velocities of all points at which bars can end."""
     fastening, outward, *moving = alike(
         model.board.fastening_by_side,
         OUTWARD,
@@ -76,7 +78,7 @@ def points_of(model: GearModel, state: State, tow: Tow) -> Points:
 
 
 def motion_of(model: GearModel, points: Points, tow: Tow) -> BarMotion:
-    """Motion of all bars."""
+    """Return the motion of all bars."""
     ends = model.ends
     x, v = alike(points.positions, points.velocities)
     vector, stretching, velocity = np.empty((3, len(ends), 3), x.dtype)
@@ -100,13 +102,13 @@ def _motion(
 
 
 def sheets_of(model: GearModel) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """Sheets of netting as compiled loops take them."""
+    """Return the sheets of netting for compiled loops."""
     sheets = model.sheets
     return sheets.around, sheets.weights, sheets.lift, sheets.twine
 
 
 def lump_forces(model: GearModel, state: State) -> FloatArray:
-    """Drag (eq. 22), weight and buoyancy (eq. 28) of knots, floats and weights, (n, 3) N."""
+    """Return drag (eq. 22), weight and buoyancy (eq. 28) of the lumps at nodes, (n, 3) N."""
     x, v, *lumps = alike(
         state.nodes,
         state.node_velocities,
@@ -124,7 +126,7 @@ def lump_forces(model: GearModel, state: State) -> FloatArray:
 
 
 def board_loads(model: GearModel, state: State) -> FloatArray:
-    """Force and moment (2, 6) on both boards that do not come from ropes."""
+    """Return the force and moment (2, 6) on both boards that do not come from ropes."""
     return board_physics.own_load(
         model.board,
         model.coefficients,
@@ -138,7 +140,7 @@ def board_loads(model: GearModel, state: State) -> FloatArray:
 
 
 def kite_load(model: GearModel, state: State) -> FloatArray:
-    """Force (3,) on the kite."""
+    """Return the force (3,) on the kite."""
     held = model.layout.kite
     if not held.held:
         return np.zeros(3)
@@ -148,7 +150,7 @@ def kite_load(model: GearModel, state: State) -> FloatArray:
 
 
 def forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
-    """Generalised forces (dof,) on nodes (N) and boards (N, N m), in fixed axes."""
+    """Return generalised forces (dof,) on nodes (N) and boards (N, N m), in fixed axes."""
     points = points_of(model, state, tow)
     x, v, rest, rate = alike(points.positions, points.velocities, *rest_lengths(model, tow))
     total = np.zeros_like(x)
@@ -162,7 +164,7 @@ def forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
 def gathered(
     model: GearModel, total: FloatArray, arms: FloatArray, boards: FloatArray, kite: FloatArray
 ) -> FloatArray:
-    """Generalised forces (dof,) from the loads of points, boards and kite."""
+    """Return generalised forces (dof,) from the loads of points, boards and kite."""
     held = model.layout.kite
     given = alike(total, arms, boards, kite, held.shares)
     force = np.empty(model.dof, given[0].dtype)
@@ -171,10 +173,10 @@ def gathered(
 
 
 def block_forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
-    """Force (2, 3) of each warp on its towing block, N.
+    """Return the force (2, 3) of each warp on its towing block, N.
 
-    With the half segment of load that a lumped line hangs on its fixed end, so that the
-    tension at the block does not depend on how finely the warp is cut.
+    It includes the load of half a segment, which a lumped line has at its fixed end. So the tension
+    at the block does not depend on the number of segments.
     """
     top = model.layout.top_warp_bars
     block, upper = model.ends[top].T
@@ -195,7 +197,7 @@ def block_forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
 
 
 def bar_tensions(model: GearModel, state: State, tow: Tow) -> FloatArray:
-    """Tension (m,) of every bar, N."""
+    """Return the tension (m,) of every bar, N."""
     return line.tension(model.bars, motion_of(model, points_of(model, state, tow), tow))[0]
 
 
@@ -209,7 +211,7 @@ class LinearisedForces:
 
 
 def linearised(model: GearModel, state: State, tow: Tow) -> LinearisedForces:
-    """Forces with their exact derivatives at one state."""
+    """Return the forces with their exact derivatives at one state."""
     pattern, points = model.pattern, points_of(model, state, tow)
     n, hung = model.nodes, len(model.pattern.hung)
     stiffness, damping = np.zeros((2, len(pattern.indices)))
@@ -246,7 +248,7 @@ def linearised(model: GearModel, state: State, tow: Tow) -> LinearisedForces:
 
 
 def _lift(model: GearModel, points: Points) -> FloatArray:
-    """B of `_rigged_blocks` beside the identity of the bar's other end, (r, 6, 9)."""
+    """Return B of `_rigged_blocks` with the identity of the bar's other end, (r, 6, 9)."""
     lift = np.zeros((len(model.pattern.rigged), 6, 9))
     lift[:, :3, :3] = np.eye(3)
     lift[:, :3, 3:6] = -skew(points.arms[model.pattern.rig_board, model.pattern.rig_point])
@@ -262,22 +264,22 @@ def _rigged_blocks(
     k: FloatArray,
     c: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Bars that start at a fastening point p = X + a: δp = B (δX, δθ), B = [I, -S(a)]."""
+    """Return the blocks of bars at a fastening point p = X + a: δp = [I, -S(a)] (δX, δθ)."""
     arm = skew(points.arms[model.pattern.rig_board, model.pattern.rig_point])
     spin = skew(state.board_rates[model.pattern.rig_board])
     lift = _lift(model, points)
-    # The velocity of the point, v + ω × a, turns with the board as well.
+    # The velocity of the point, v + ω × a, changes with the rotation too.
     turning = np.zeros((len(k), 6, 9))
     turning[:, :3, 3:6] = -spin @ arm
     back = np.swapaxes(lift, 1, 2)
     rig_k = back @ (k @ lift + c @ turning)
-    # The moment a × f changes with a even where f does not.
+    # The moment a × f changes with the rotation of a, even at constant f.
     rig_k[:, 3:6, 3:6] -= skew(forces) @ arm
     return rig_k, back @ c @ lift
 
 
 def _board_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Boards' own loads by the complex step in their 12 positions and velocities."""
+    """Linearise the boards' own loads by the complex step in their positions and velocities."""
     shift, turned, velocity, rate = _board_steps()
     load = board_physics.own_load(
         model.board,
@@ -295,8 +297,9 @@ def _board_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArra
 
 @cache
 def _board_steps() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Complex steps in a board's place, attitude (as rotations), velocity and rate, in this order:
-    each of them for all twelve.
+    """Return complex steps in a board's position, rotation, velocity and rate.
+
+    Each of them has all twelve steps, of which three are its own; the second are rotations.
     """
     steps = stepped(np.zeros((12, 12)), np.eye(12)).reshape(12, 4, 1, 3)
     return steps[:, 0], rotation(steps[:, 1]), steps[:, 2], steps[:, 3]
@@ -304,12 +307,12 @@ def _board_steps() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
 
 @cache
 def _kite_steps() -> FloatArray:
-    """Complex steps (12, 2, 2, 3) in place and velocity of both carrying points of the kite."""
+    """Return complex steps (12, 2, 2, 3) in position and velocity of the kite's two carriers."""
     return stepped(np.zeros((12, 12)), np.eye(12)).reshape(12, 2, 2, 3)
 
 
 def _kite_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """The kite's load by the complex step in its two carriers' positions and velocities."""
+    """Linearise the kite's load by the complex step in its carriers' positions and velocities."""
     held = model.layout.kite
     if not held.held:
         return np.zeros((1, 9, 9)), np.zeros((1, 9, 9)), np.zeros(3)
@@ -347,10 +350,10 @@ def _lump_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray
 
 
 def mass(model: GearModel, state: State, tow: Tow) -> FloatArray:
-    """Mass matrix with added mass (eq. 15, 16, 25-27, 29) as data on the pattern.
+    """Return the mass matrix with added mass (eq. 15, 16, 25-27, 29) as data on the pattern.
 
-    Bars give half of their mass to either end, boards their inertia in fixed axes, and
-    their added mass where the gear file switches it on.
+    Bars contribute half of their mass to either end. Boards contribute their inertia in fixed
+    axes, and their added mass if the gear file has one.
     """
     pattern, points = model.pattern, points_of(model, state, tow)
     hung, rigged = len(pattern.hung), len(pattern.rigged)

@@ -1,8 +1,8 @@
-"""One straight bar: pull, drag, added mass and their slopes (eq. 20-24, 26), compiled.
+"""One straight bar: tension, drag, added mass and their derivatives (eq. 20-24, 26), compiled.
 
-`trawl_ros.model.line` has tension and drag for arrays of bars, `trawl_ros.model.bar_pass` sums all
-of it up over a gear. Vectors are arrays (3,), some of them to be filled in; numbers are real, or
-complex for a complex step where no slopes are asked for.
+`trawl_ros.model.line` has tension and drag for arrays of bars, `trawl_ros.model.bar_pass` sums
+everything over a gear. Vectors are arrays (3,); outputs are arrays to be filled in. Numbers are
+real, or complex for a complex step in functions without derivatives.
 """
 
 import numpy as np
@@ -11,17 +11,19 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.compiled import compiled, inner
 
 SLACK_WIDTH = 1e-4
-"""Half the range of strain over which slack passes smoothly into taut; eq. 20 has a kink."""
+"""Half the range of strain over which the kink of eq. 20, from slack to taut, is rounded."""
 
 SLACKEST_STRAIGHT = 1.0 - SLACK_WIDTH
-"""Length over length at rest from which a bar counts as straight: where the rounding ends."""
+"""Length over rest length above which a bar counts as straight: where the rounding ends."""
 
-SURELY = 1e-8
-"""Step of Newton's method, as a share of what it seeks, after which the next, which is about its
-square, would lie below rounding."""
+NEWTON_STEP_TOLERANCE = 1e-8
+"""Relative step of Newton's method after which it ends.
 
-STILL = 1e-6
-"""Speed (m/s) below which quadratic drag is rounded off, so that its derivative exists."""
+Convergence is quadratic: the next step would be about its square, below rounding.
+"""
+
+SPEED_ROUNDING_M_S = 1e-6
+"""Speed below which quadratic drag is rounded off, so that its derivative exists."""
 
 
 @inner
@@ -34,7 +36,7 @@ def between(
     stretching: FloatArray,
     velocity: FloatArray,
 ) -> float:
-    """Fill in the motion of a bar between two points, and return its mean height."""
+    """Fill in the motion of a bar between two points and return its mean height."""
     for i in range(3):
         vector[i] = x[end, i] - x[start, i]
         stretching[i] = v[end, i] - v[start, i]
@@ -45,29 +47,31 @@ def between(
 
 @inner
 def bowed_at(strain: float, bow: float) -> tuple[float, float, float]:
-    """Elastic strain of a bar that bows under a load across it, and its first two derivatives.
+    """Return the elastic strain of a bar that sags under a load across it, with two derivatives.
 
-    The bow takes (Q / T)² / 24 of the bar's length, with the load Q on all of it and the tension T.
-    So the elastic strain e = T / EA is the root of e - bow / e² = strain, bow = (Q / EA)² / 24.
+    The sag shortens the bar by (Q / T)² / 24 of its length, with the whole load Q and the tension
+    T. So the elastic strain e = T / EA is the root of e - bow / e² = strain, bow = (Q / EA)² / 24.
     """
+    # Start below the root: from there Newton's method converges monotonically.
     root, real = bow ** (1.0 / 3.0), strain.real
     e = max(real, root) if real > 0.0 else np.sqrt(bow / (root - real))
     step = e
-    while step > SURELY * e:  # Newton from below, where its steps only rise
+    while step > NEWTON_STEP_TOLERANCE * e:
         square = e * e
         step = e * ((real - e) * square + bow) / (e * square + 2.0 * bow)
         e += step
     slope = 1.0 / (1.0 + 2.0 * bow / e**3)
     curve = 6.0 * bow / e**4 * slope**3
-    # The imaginary part is a complex step, so small that tangents are exact.
-    beside = strain - strain.real
-    return e + slope * beside, slope + curve * beside, curve
+    # The imaginary part is a complex step: its first-order term is exact to rounding.
+    imaginary = strain - strain.real
+    return e + slope * imaginary, slope + curve * imaginary, curve
 
 
 @inner
 def taut_at(strain: float, bow: float) -> tuple[float, float, float]:
-    """Elastic strain of a bar, and its first two derivatives: the positive part with a rounded
-    corner or, where the bar bows, as `bowed_at` has it.
+    """Return the elastic strain of a bar and its first two derivatives.
+
+    It is the positive part of the strain with a rounded corner, or `bowed_at` if the bar sags.
     """
     if bow > 0.0:
         return bowed_at(strain, bow)
@@ -90,11 +94,11 @@ def tension_at(
     rest_rate: float,
     along: FloatArray,
 ) -> tuple[float, float]:
-    """Tension of a bar (eq. 20, 21), and slope of its elastic strain by its strain; ``along`` gets
-    its unit vector.
+    """Return the tension of a bar (eq. 20, 21) and the slope of its elastic strain.
 
-    The damping is added to the strain before slack is told from taut: so tension rises with strain
-    and with its rate everywhere, and no bar pushes, however quickly it shortens.
+    ``along`` gets the unit vector of the bar. Damping is added to the strain before the positive
+    part is taken. So tension rises with strain and strain rate everywhere, and a bar never pushes,
+    however quickly it shortens.
     """
     span: float = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
     closing = -rest_rate * span / rest
@@ -107,10 +111,10 @@ def tension_at(
 
 @inner
 def spanned_at(vector: FloatArray, rest: float) -> float:
-    """Part of a bar's length that is drawn out between its ends: 1, or less where it is slack.
+    """Return the distance of a bar's ends over its straight length, at most 1.
 
-    A slack twine hangs in a loop. Its drag across the flow is that of ∫ sin³θ ds over the loop, at
-    most ∫ sin θ ds, which is the distance of its ends.
+    A slack twine hangs in a loop. Its drag across the flow goes with ∫ sin³θ ds over the loop, at
+    most with ∫ sin θ ds, which is the distance of its ends.
     """
     span: float = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
     straight = SLACKEST_STRAIGHT * rest
@@ -133,20 +137,20 @@ def drag_at(
 ) -> None:
     """Fill in the drag on a bar (eq. 23, 24); the areas include their coefficients.
 
-    Both coefficients grow with the root of the flow's part across as it falls: |u| becomes
-    |u| + viscous √|u across| (docs/model.md, Netting).
+    Both coefficients grow as the normal component u_n of the flow falls: |u| becomes
+    |u| + viscous √|u_n| (docs/model.md, Netting).
     """
     tangential = 0 * rest
     for i in range(3):
         tangential += flow[i] * along[i]
-    square = STILL**2 + 0 * rest
+    square = SPEED_ROUNDING_M_S**2 + 0 * rest
     for i in range(3):
         square += (flow[i] - tangential * along[i]) ** 2
     half = 0.5 * density * rest
     speed = np.sqrt(square)
     root = np.sqrt(speed)
     across = half * normal_area * (speed + normal_viscous * root)
-    sliding = np.sqrt(tangential**2 + STILL**2) + friction_viscous * root
+    sliding = np.sqrt(tangential**2 + SPEED_ROUNDING_M_S**2) + friction_viscous * root
     lengthwise = half * sliding_area * sliding * tangential
     for i in range(3):
         normal = flow[i] - tangential * along[i]
@@ -155,7 +159,7 @@ def drag_at(
 
 @compiled
 def weight_at(mass: float, volume: float, rest: float, density: float, gravity: float) -> float:
-    """Weight and buoyancy of a bar (eq. 28), up positive."""
+    """Return weight and buoyancy of a bar (eq. 28), up positive."""
     return -gravity * (mass - density * volume) * rest
 
 
@@ -173,8 +177,9 @@ def pull_slopes_at(
     by_vector: FloatArray,
     by_stretching: FloatArray,
 ) -> None:
-    """Fill in the slopes (3, 3) of a bar's tension times its unit vector; tension and its own slope
-    are those of `tension_at`.
+    """Fill in the derivatives (3, 3) of a bar's tension times its unit vector.
+
+    ``force`` and ``slope`` are the results of `tension_at`.
     """
     span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
     closing = 0.0
@@ -183,7 +188,7 @@ def pull_slopes_at(
     elastic = slope / rest
     viscous = stiffness * damping_time * slope / rest
     for j in range(3):
-        # Change of force as the far end moves along axis j.
+        # Change of tension as the far end moves along axis j.
         turning = (stretching[j] - closing * along[j]) / span
         rate_j = (turning - rest_rate / rest * along[j]) / rest
         force_j = stiffness * (elastic * along[j] + damping_time * slope * rate_j)
@@ -207,28 +212,29 @@ def load_slopes_at(
     by_vector: FloatArray,
     by_velocity: FloatArray,
 ) -> None:
-    """Fill in the slopes (3, 3) of `drag_at` by the bar's vector and by its velocity, which is
-    minus the flow's.
+    """Fill in the derivatives (3, 3) of `drag_at` by the bar's vector and by its velocity.
+
+    The derivative by the velocity is minus that by the flow.
     """
     span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
     tangential = 0.0
     for i in range(3):
         tangential += flow[i] * along[i]
-    square = STILL**2
+    square = SPEED_ROUNDING_M_S**2
     for i in range(3):
         square += (flow[i] - tangential * along[i]) ** 2
     speed = np.sqrt(square)
     root = np.sqrt(speed)
-    sliding = np.sqrt(tangential**2 + STILL**2)
+    sliding = np.sqrt(tangential**2 + SPEED_ROUNDING_M_S**2)
     half = 0.5 * density * rest
     across, lengthwise = half * normal_area, half * sliding_area
-    # F = factor n + pull t, with the flow's part n across the bar, and t along it.
+    # F = factor n + pull t, with the normal component n of the flow and the bar's unit vector t.
     factor = across * (speed + normal_viscous * root)
     growth = across * (1.0 + 0.5 * normal_viscous / root) / speed
     viscous = lengthwise * friction_viscous * root
     by_tangential = lengthwise * (sliding + tangential**2 / sliding) + viscous
     by_normal = 0.5 * tangential * viscous / square
-    # As the bar turns by δt, n changes by -(δt · u) t - (u · t) δt, and δt has no part along t.
+    # As the bar turns by δt, n changes by -(δt · u) t - (u · t) δt; δt is normal to t.
     turning = (by_tangential - factor - by_normal * tangential) / span
     swinging = tangential * (lengthwise * sliding + viscous - factor) / span
     bending = -tangential * growth / span

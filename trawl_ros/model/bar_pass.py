@@ -1,11 +1,11 @@
-"""One pass over the bars of a gear: their forces, slopes and masses, summed up where they act.
+"""One pass over the bars of a gear: forces, derivatives and masses, summed up where they act.
 
 Ends of bars are numbered as in `trawl_ros.model.gear_model`; properties of bars are
 `BarProperties.columns`, those of the water `water_of`. Slots are those of the pattern, 36 for each
-plain bar; the 6 × 6 blocks of the other bars are left to be turned and placed by the caller.
+plain bar; the caller rotates and places the 6 × 6 blocks of the other bars.
 
-Both loops over forces begin alike: a function for that beginning, which would be handed all these
-arrays, made `forces` take 1.8 times as long.
+Both loops over forces begin with the same lines. A common function for them would take all these
+arrays; it made `forces` 1.8 times as slow.
 """
 
 from typing import TypeAlias
@@ -32,7 +32,7 @@ WaterTable: TypeAlias = tuple[float, float, float, FloatArray, FloatArray]
 
 
 def water_of(water: Water) -> WaterTable:
-    """The water as compiled loops take it."""
+    """Return the water for compiled loops: density, its gradient, gravity, profile of currents."""
     return (
         float(water.density),
         float(water.density_gradient),
@@ -52,7 +52,7 @@ def add_bar_forces(
     water: WaterTable,
     total: FloatArray,
 ) -> None:
-    """Add to the points (p, 3) at both ends of the bars their pull and half of their load each."""
+    """Add the tension of the bars, and half of their load, to the points (p, 3) at both ends."""
     stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction = bars[:8]
     bow, normal_viscous, friction_viscous = bars[10:]
     density, gradient, gravity, knots, cubics = water
@@ -97,10 +97,10 @@ def add_bar_blocks(
     c_others: FloatArray,
     start_force: FloatArray,
 ) -> None:
-    """The same, with K = -∂F/∂q and C = -∂F/∂v of the bars.
+    """Add forces as `add_bar_forces` does, with K = -∂F/∂q and C = -∂F/∂v of the bars.
 
-    ``order`` has the plain bars first, whose blocks are added into the data of both matrices; of
-    the others come the blocks (r, 6, 6), and the forces (r, 3) at their starts.
+    ``order`` has the plain bars first, whose blocks are added to the data of both matrices. For
+    the r other bars the blocks (r, 6, 6) and the forces (r, 3) at their starts are filled in.
     """
     stiffness, damping_time, mass, volume, normal_area, wet_area, normal_drag, friction = bars[:8]
     bow, normal_viscous, friction_viscous = bars[10:]
@@ -154,7 +154,7 @@ def add_bar_blocks(
             load_by_velocity,
         )
         if spanned < 1.0:
-            # The drag across a slack bar goes with the distance of its ends.
+            # The normal drag of a slack bar goes with the distance of its ends.
             whole = normal_drag[n] * normal_area[n] / SLACKEST_STRAIGHT
             drag_at(whole, 0.0, viscous[0], 0.0, 1.0, here, flow, along, own)
             for i in range(3):
@@ -171,7 +171,7 @@ def add_bar_blocks(
             total[end, i] += 0.5 * load[i] - force * along[i]
             for j in range(3):
                 pull, turned = by_vector[i, j], 0.5 * load_by_vector[i, j]
-                # Either end makes half of the bar's mean height and velocity.
+                # Each end contributes half of the bar's mean height and velocity.
                 sunk = 0.25 * by_height[i] if j == 2 else 0.0
                 k[i, j] = pull + turned - sunk
                 k[i, 3 + j] = -pull - turned - sunk
@@ -208,8 +208,9 @@ def add_bar_masses(
     data: FloatArray,
     others: FloatArray,
 ) -> None:
-    """Add half of the mass of the bars at either end, as `add_bar_blocks` does; of those that are
-    not plain comes one half (r, 3, 3).
+    """Add half of the mass of the plain bars at either end, as `add_bar_blocks` does.
+
+    For the r other bars one half (r, 3, 3) is filled in.
     """
     mass, volume, added_normal, added_tangential = bars[2], bars[3], bars[8], bars[9]
     plain = len(order) - len(others)

@@ -1,8 +1,8 @@
 """The otter board as a rigid body with six degrees of freedom (eq. 1-19).
 
-All of the physics is written once, in the *outward* frame: x forward, y away from the net's
-middle, z up. For the port board that is its right-handed body frame (x forward, y port,
-z up); the starboard board is its mirror image, reached by the sign ``outward`` alone.
+The physics is written once, in the *outward* frame: x forward, y away from the net's middle, z up.
+For the port board this is its right-handed body frame (x forward, y port, z up). The starboard
+board is the mirror image; the sign ``outward`` is the only difference.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ from trawl_ros.model.water import Water
 Angles = tuple[float, float, float]
 """Installation angles ε, ζ, η, rad."""
 
-ALIKE: Angles = (0.0, 0.0, 0.0)
+AS_INSTALLED: Angles = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -51,15 +51,15 @@ class Board:
     installation : tuple of float
         ε, ζ, η (rad): turns of the board about its z, y and x axes against its rigging.
     rotary_slope : float
-        Slope of lift per radian with which strips of a turning board resist its turning; zero
-        as in the paper, or by the gear file.
+        Slope of lift per radian with which strips of a turning board resist the rotation; zero
+        in the paper, otherwise from the gear file.
     added_mass : (3,) array
-        Added mass along the board's axes, kg; zero as in eq. 15, or by the gear file.
-    bend : Bend or None
-        Modifier of the coefficients of the law; None leaves them as they are.
+        Added mass along the board's axes, kg; zero in eq. 15, otherwise from the gear file.
+    coefficient_modifier : CoefficientModifier or None
+        Modifier of the coefficients of the law; None for none.
     rerigged : tuple of tuples of float
-        By how much (rad) the installation angles of the port and of the starboard board differ
-        from ``installation``.
+        Deviation (rad) of the installation angles of the port and of the starboard board from
+        ``installation``.
     law : TableLaw or None
         Law in place of eq. 14, whose coefficients are then corrections to it; None is eq. 14.
     """
@@ -74,18 +74,18 @@ class Board:
     installation: Angles
     rotary_slope: float
     added_mass: FloatArray
-    bend: CoefficientModifier | None = None
+    coefficient_modifier: CoefficientModifier | None = None
     law: TableLaw | None = None
-    rerigged: tuple[Angles, Angles] = (ALIKE, ALIKE)
+    rerigged: tuple[Angles, Angles] = (AS_INSTALLED, AS_INSTALLED)
 
     @property
     def law_range(self) -> tuple[float, float]:
-        """Least and greatest angle of attack (rad) for which the law holds as it stands."""
+        """Least and greatest angle of attack (rad) for which the law holds unchanged."""
         return LAW_RANGE if self.law is None else self.law.range
 
     @cached_property
     def installed(self) -> FloatArray:
-        """Rotation (3, 3) of the installation angles: points times it are in the board frame."""
+        """Rotation (3, 3) of the installation angles; row vectors times it are the board's."""
         return _turn(self.installation)
 
     @cached_property
@@ -95,14 +95,14 @@ class Board:
 
     @cached_property
     def fastening_by_side(self) -> FloatArray:
-        """Fastening points (2, 3, 3) of either board in its outward frame."""
+        """Fastening points (2, 3, 3) of both boards, each in its outward frame."""
         turns = [np.add(self.installation, own) for own in self.rerigged]
         points: FloatArray = np.stack([self.points @ _turn(turn) for turn in turns])
         return points
 
     @cached_property
     def rotary_resistance(self) -> FloatArray:
-        """Rotary slope times second moments of area about the x and z axes, m⁴; none about y."""
+        """Rotary slope times second moments of area about the x and z axes, m⁴; zero about y."""
         b, chord = self.span, self.chord
         areas: FloatArray = np.array([chord * b**3 / 12, 0.0, b * chord**3 / 12])
         return self.rotary_slope * areas
@@ -114,14 +114,12 @@ class Board:
 
     @cached_property
     def middles(self) -> FloatArray:
-        """Means (2, 3) of either board's fastening points in its outward frame, m: the places whose
-        velocity eq. 4 takes.
-        """
+        """Means (2, 3) of the boards' fastening points in their outward frames, m (eq. 4)."""
         means: FloatArray = self.fastening_by_side.sum(1) / 3
         return means
 
     def middle(self, outward: FloatArray) -> FloatArray:
-        """Mean (..., 3) of the fastening points of the board on this side (...,)."""
+        """Return the mean (..., 3) of the fastening points of the board on this side (...,)."""
         port, starboard = self.middles
         middle: FloatArray = np.where(np.real(outward)[..., None] > 0.0, port, starboard)
         return middle
@@ -133,7 +131,7 @@ def _turn(angles: Angles | FloatArray) -> FloatArray:
 
 
 def coefficients_at(values: FloatArray, attack: FloatArray, slip: FloatArray) -> FloatArray:
-    """The six force and moment coefficients at given angles (eq. 14).
+    """Return the six force and moment coefficients at given angles (eq. 14).
 
     Parameters
     ----------
@@ -146,8 +144,8 @@ def coefficients_at(values: FloatArray, attack: FloatArray, slip: FloatArray) ->
     -------
     (..., 6) array
         C_x^F, C_y^F, C_z^F, C_x^M, C_y^M, C_z^M. Outside 0-40° of attack lift, moments and
-        the slip's part fade, drag stays and never becomes thrust; outside ±40° of slip its
-        part stays.
+        the part of the slip fade; drag stays constant and never becomes thrust. Outside ±40° of
+        slip its part stays constant.
     """
     shape = np.broadcast_shapes(np.shape(attack), np.shape(slip))
     given = values, *(np.broadcast_to(angles, shape).ravel() for angles in (attack, slip))
@@ -158,12 +156,12 @@ def coefficients_at(values: FloatArray, attack: FloatArray, slip: FloatArray) ->
 
 
 def _like(given: tuple[FloatArray, ...], found: FloatArray) -> FloatArray:
-    """Result of the law, which is compiled for complex numbers: real for real numbers."""
+    """Return a result of the law, which is compiled for complex numbers, real for real input."""
     return found if stepped_among(*given) else found.real
 
 
 def mirrored_axes(outward: FloatArray) -> FloatArray:
-    """Signs (..., 3) that turn the outward frame's axes into the door frame's."""
+    """Return the signs (..., 3) between the axes of the outward frame and of the door frame."""
     signs = np.ones((*outward.shape, 3))
     signs[..., 1] = outward
     return signs
@@ -171,9 +169,18 @@ def mirrored_axes(outward: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class BoardFlow:
-    """Relative flow at boards: angles α, β (rad), flow in the outward frame (..., 3) m/s,
-    density (kg/m³), and the vertical parts ``lean`` of the outward normal and ``rise`` of the
-    forward axis.
+    """Relative flow at boards.
+
+    Attributes
+    ----------
+    attack, slip : (...) arrays
+        Angles α and β, rad.
+    flow : (..., 3) array
+        Velocity of the water relative to the board in the outward frame, m/s.
+    density : (...) array
+        Density of the water, kg/m³.
+    lean, rise : (...) arrays
+        Vertical parts of the outward normal and of the forward axis.
     """
 
     attack: FloatArray
@@ -193,10 +200,10 @@ def flow_at(
     rate: FloatArray,
     water: Water,
 ) -> BoardFlow:
-    """Relative water velocity and orientation angles (eq. 1-4).
+    """Return the relative water velocity and the orientation angles (eq. 1-4).
 
-    The board's velocity is the mean of its three fastening points' (eq. 4). Angles come from
-    ``arctan2``, which equals eq. 1 and 2 within ±90° and does not fold beyond.
+    The board's velocity is the mean velocity of its three fastening points (eq. 4). Angles come
+    from ``arctan2``, which equals eq. 1 and 2 within ±90° and is unique beyond.
     """
     shape = np.broadcast_shapes(
         np.shape(outward), position.shape[:-1], rotation.shape[:-2], velocity.shape[:-1]
@@ -226,13 +233,13 @@ def flow_at(
 def hydrodynamics(
     board: Board, values: FloatArray, flow: BoardFlow
 ) -> tuple[FloatArray, FloatArray]:
-    """Force (..., 3) N and moment (..., 3) N m in the outward frame (eq. 12-14)."""
+    """Return force (..., 3) N and moment (..., 3) N m in the outward frame (eq. 12-14)."""
     if board.law is None:
         coefficients = coefficients_at(values, flow.attack, flow.slip)
     else:
         coefficients = board.law(values, flow.attack, flow.slip, flow.lean, flow.rise)
-    if board.bend is not None:
-        coefficients = board.bend(coefficients, flow.attack, flow.slip, flow.lean)
+    if board.coefficient_modifier is not None:
+        coefficients = board.coefficient_modifier(coefficients, flow.attack, flow.slip, flow.lean)
     given = flow.density.ravel(), flow.flow.reshape(-1, 3), coefficients.reshape(-1, 6)
     loads = np.empty((2, *given[1].shape), complex)
     fill_loads(
@@ -247,7 +254,7 @@ def hydrodynamics(
 
 
 def world_inertia(board: Board, outward: FloatArray, rotation: FloatArray) -> FloatArray:
-    """Inertia about the centre of gravity in fixed axes, (..., 3, 3) kg m²."""
+    """Return the inertia about the centre of gravity in fixed axes, (..., 3, 3) kg m²."""
     mirror = mirrored_axes(outward)
     body = mirror[..., :, None] * board.inertia * mirror[..., None, :]
     return rotation @ body @ transpose(rotation)
@@ -263,10 +270,11 @@ def own_load(
     rate: FloatArray,
     water: Water,
 ) -> FloatArray:
-    """Force and moment (..., 6) in fixed axes that do not come from ropes.
+    """Return the force and moment (..., 6) in fixed axes that do not come from ropes.
 
-    Hydrodynamics (eq. 12-14), weight and buoyancy (eq. 19) and the gyroscopic moment
-    -ω × Iω, which eq. 15 drops and which a spinning board needs to keep its angular momentum.
+    They are hydrodynamics (eq. 12-14), weight and buoyancy (eq. 19) and the gyroscopic moment
+    -ω × Iω. Eq. 15 omits the latter; without it a spinning board would not conserve its angular
+    momentum.
     """
     shape = np.broadcast_shapes(
         np.shape(outward), position.shape[:-1], rotation.shape[:-2], velocity.shape[:-1]
@@ -282,7 +290,7 @@ def own_load(
         _flat(rate, shape, 3),
     )
     turning = board.inertia, board.rotary_resistance
-    if board.bend is None and board.law is None:
+    if board.coefficient_modifier is None and board.law is None:
         total = _by_formula(board, as_kind(complex, *given), water)
         return _like(given, total).reshape(*shape, 6)
     total = np.empty((len(given[2]), 6), complex)
@@ -304,7 +312,7 @@ def own_load(
 
 
 def _by_formula(board: Board, given: list[FloatArray], water: Water) -> FloatArray:
-    """Loads (n, 6) by eq. 14, from coefficients, middle, and motion as `own_load` has them."""
+    """Return loads (n, 6) by eq. 14 from coefficients, middle and motion as in `own_load`."""
     total = np.empty((len(given[2]), 6), complex)
     fill_own_loads(
         float(board.mass),
@@ -330,10 +338,10 @@ def own_load_slopes(
     rate: FloatArray,
     water: Water,
 ) -> FloatArray:
-    """Derivatives (n, 6, 12) of `own_load` of ``n`` boards by the coefficients."""
+    """Return the derivatives (n, 6, 12) of `own_load` of ``n`` boards by the coefficients."""
     moving = position, rotation, velocity, rate
     steps = values + 1j * STEP * np.eye(len(values))
-    if board.bend is None and board.law is None:
+    if board.coefficient_modifier is None and board.law is None:
         _, *rest = as_kind(complex, values, board.middle(outward), outward, *moving)
         loads = [_by_formula(board, [step, *rest], water) for step in steps]
     else:
@@ -342,7 +350,7 @@ def own_load_slopes(
 
 
 def _flat(array: FloatArray, shape: tuple[int, ...], *tail: int) -> FloatArray:
-    """The array for one board after another."""
+    """Return the array with one row per board."""
     whole = (*shape, *tail)
     if np.shape(array) != whole:
         array = np.broadcast_to(array, whole)

@@ -1,8 +1,8 @@
 """The law of the otter board (eq. 1-4, 12-14, 19), compiled, one board after another.
 
-Arrays are those of `trawl_ros.model.board`, flattened to ``n`` boards. Numbers are complex, for a
-complex step: boards are two, so a second form for real ones would save less time than its
-compilation takes.
+Arrays are those of `trawl_ros.model.board`, flattened to ``n`` boards. Numbers are complex, for
+the complex step. There are only two boards: a second compiled form for real numbers would take
+longer to compile than it saves.
 """
 
 from math import atan2, cos, radians
@@ -15,25 +15,27 @@ from trawl_ros.model.compiled import compiled, inner
 from trawl_ros.model.current import current_at
 
 LAW_RANGE = (0.0, radians(40.0))
-"""Attack angles (rad) for which eq. 14 holds as it stands."""
+"""Attack angles (rad) for which eq. 14 holds unchanged."""
 
-LAW_END = (radians(-40.0), radians(90.0))
-"""Attack angles (rad) at which, outside that range, lift and moments have faded to nothing."""
+LAW_FADED_RAD = (radians(-40.0), radians(90.0))
+"""Attack angles below and above `LAW_RANGE` at which lift and moments have faded to zero."""
 
-SLIP_LIMIT = radians(40.0)
-"""Slip angle (rad) beyond which its part of eq. 14 stays constant."""
+SLIP_LIMIT_RAD = radians(40.0)
+"""Slip angle beyond which its part of eq. 14 stays constant."""
 
-LEAST_ACROSS = cos(SLIP_LIMIT) ** 2
-"""Part of the squared flow that lies in the board's x-y plane below which, the flow then running
-along the span, the law's forces and moments fade with that part."""
+LEAST_IN_PLANE_FRACTION = cos(SLIP_LIMIT_RAD) ** 2
+"""Part of the squared flow in the board's x-y plane below which forces and moments fade.
 
-ROUNDING = radians(4.0)
-"""Width (rad) over which an angle comes to rest outside its range."""
+There the flow runs along the span, and the attack angle is badly defined.
+"""
+
+ANGLE_ROUNDING_RAD = radians(4.0)
+"""Width over which an angle becomes constant outside its range."""
 
 
 @inner
 def angle_at(y: float, x: float) -> float:
-    """``arctan2`` that carries an infinitesimal imaginary part along."""
+    """Return ``arctan2`` with the derivative along a complex step."""
     square = x.real**2 + y.real**2
     inverse = 1.0 / square if square > 0.0 else 0.0
     slope = x.real * (y - y.real) - y.real * (x - x.real)
@@ -44,24 +46,24 @@ def angle_at(y: float, x: float) -> float:
 def settled(value: float, low: float, high: float) -> float:
     """Saturate the angle smoothly: unchanged inside [low, high], constant well outside."""
     if value.real > high:
-        if value.real - high < ROUNDING:
-            return value - (value - high) ** 2 / (2 * ROUNDING)
-        return 0 * value + high + ROUNDING / 2
+        if value.real - high < ANGLE_ROUNDING_RAD:
+            return value - (value - high) ** 2 / (2 * ANGLE_ROUNDING_RAD)
+        return 0 * value + high + ANGLE_ROUNDING_RAD / 2
     if value.real < low:
-        if low - value.real < ROUNDING:
-            return value + (value - low) ** 2 / (2 * ROUNDING)
-        return 0 * value + low - ROUNDING / 2
+        if low - value.real < ANGLE_ROUNDING_RAD:
+            return value + (value - low) ** 2 / (2 * ANGLE_ROUNDING_RAD)
+        return 0 * value + low - ANGLE_ROUNDING_RAD / 2
     return value
 
 
 @inner
 def fading(attack: float, low: float, high: float) -> float:
-    """Fade factor of a law: 1 inside its range [low, high], falling smoothly to 0 at `LAW_END`."""
+    """Return the fade factor of a law: 1 inside [low, high], smoothly 0 at `LAW_FADED_RAD`."""
     share = 0 * attack
     if attack.real > high:
-        share = (attack - high) / (LAW_END[1] - high)
+        share = (attack - high) / (LAW_FADED_RAD[1] - high)
     elif attack.real < low:
-        share = (attack - low) / (LAW_END[0] - low)
+        share = (attack - low) / (LAW_FADED_RAD[0] - low)
     if share.real > 1.0:
         share = 0 * attack + 1.0
     return 1.0 - share**2 * (3.0 - 2.0 * share)
@@ -69,19 +71,19 @@ def fading(attack: float, low: float, high: float) -> float:
 
 @inner
 def _folded(attack: float) -> float:
-    """The attack angle for drag: flow on the inner face meets as much board as on the outer."""
+    """Return the attack angle for drag, which is the same for flow on either face."""
     if attack.real >= 0.0:
         return attack
-    if attack.real > -ROUNDING:
-        return attack * (1.0 + attack / ROUNDING)
-    return -attack - ROUNDING
+    if attack.real > -ANGLE_ROUNDING_RAD:
+        return attack * (1.0 + attack / ANGLE_ROUNDING_RAD)
+    return -attack - ANGLE_ROUNDING_RAD
 
 
 @inner
 def _across(flow: FloatArray) -> float:
-    """Fade factor of α: 1, but smoothly 0 where the flow runs along the span and α is undefined."""
+    """Return the fade factor of α, which vanishes where the flow runs along the span."""
     plane = flow[0] ** 2 + flow[1] ** 2
-    part: float = plane / (plane + flow[2] ** 2 + 1e-18) / LEAST_ACROSS
+    part: float = plane / (plane + flow[2] ** 2 + 1e-18) / LEAST_IN_PLANE_FRACTION
     return part * (2.0 - part) if part.real < 1.0 else 0 * part + 1.0
 
 
@@ -89,14 +91,15 @@ def _across(flow: FloatArray) -> float:
 def fill_coefficients(
     values: FloatArray, attack: FloatArray, slip: FloatArray, coefficients: FloatArray
 ) -> None:
-    """Fill in the coefficients (n, 6) of eq. 14."""
+    """Fill in the coefficients (n, 6) of eq. 14, with the range of its angles bounded."""
     a1, c1, a2, c2, b3, c3 = values[0], values[1], values[2], values[3], values[4], values[5]
     a4, c4, b5, c5, a6, c6 = values[6], values[7], values[8], values[9], values[10], values[11]
     for n in range(len(attack)):
         fade = fading(attack[n], LAW_RANGE[0], LAW_RANGE[1])
         alpha = settled(attack[n], LAW_RANGE[0], LAW_RANGE[1])
-        beta = settled(slip[n], -SLIP_LIMIT, SLIP_LIMIT)
+        beta = settled(slip[n], -SLIP_LIMIT_RAD, SLIP_LIMIT_RAD)
         resistance = a1 * settled(_folded(attack[n]), LAW_RANGE[0], LAW_RANGE[1]) + c1
+        # A negative drag would push the board forward.
         coefficients[n, 0] = resistance if resistance.real > 0.0 else 0 * resistance
         coefficients[n, 1] = (a2 * alpha + c2) * fade
         coefficients[n, 2] = b3 * beta * fade + c3
@@ -147,9 +150,9 @@ def fill_loads(
 ) -> None:
     """Fill in force and moment (n, 3) in the outward frame (eq. 12).
 
-    The paper's loads act along axes aft (with the flow), outward and down, which are left-handed
-    as the outward frame is for starboard. A half turn about y leads from one to the other, and
-    the vector product of eq. 17 in their components changes the sign of what is about x and z.
+    The paper's loads act along axes aft (with the flow), outward and down. These axes are
+    left-handed, as the outward frame of the starboard board is. A half turn about y transforms one
+    into the other, and the vector product of eq. 17 changes the sign of moments about x and z.
     """
     for n in range(len(flow)):
         across, down = flow[n, 0] ** 2 + flow[n, 1] ** 2, flow[n, 2] ** 2
@@ -179,9 +182,9 @@ def fill_total(
     moment: FloatArray,
     total: FloatArray,
 ) -> None:
-    """Fill in the whole load (n, 6) in fixed axes: weight, and moments of a turning board, too.
+    """Fill in the whole load (n, 6) in fixed axes, with weight and moments of a turning board.
 
-    ``slowing`` (3,) are rotary slope times rotary areas, ``heavy`` (n,) weights in water.
+    ``slowing`` (3,) is `Board.rotary_resistance`, ``heavy`` (n,) the weights in water.
     """
     turning, twist = np.empty(3, total.dtype), np.empty(3, total.dtype)
     spin = np.empty(3, total.dtype)
@@ -189,16 +192,16 @@ def fill_total(
         turn, side = rotation[n], outward[n]
         speed = np.sqrt(flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2 + 1e-18)
         for i in range(3):
-            # In the outward frame; a rate is an axial vector, as a moment is.
+            # In the outward frame; a rate is an axial vector like a moment.
             along = turn[0, i] * rate[n, 0] + turn[1, i] * rate[n, 1] + turn[2, i] * rate[n, 2]
             turning[i] = along if i == 1 else side * along
         for i in range(3):
-            # Each strip of a turning board meets the flow at an attack angle of its own: ω r / u.
+            # Rotation adds ω r / u to the attack angle of a strip at the distance r.
             twist[i] = moment[n, i] - 0.5 * density[n] * speed * slowing[i] * turning[i]
         for i in range(3):
             total[n, i] = turn[i, 0] * force[n, 0] + turn[i, 2] * force[n, 2]
             total[n, i] += side * turn[i, 1] * force[n, 1]
-            # A moment's mirror image carries the reflection's determinant too.
+            # An axial vector is mirrored with the determinant of the reflection.
             total[n, 3 + i] = side * (turn[i, 0] * twist[0] + turn[i, 2] * twist[2])
             total[n, 3 + i] += turn[i, 1] * twist[1]
             spin[i] = 0 * speed
@@ -207,6 +210,7 @@ def fill_total(
                 for k in range(3):
                     spin[i] += lever * inertia[j, k] * turning[k]
         total[n, 2] -= heavy[n]
+        # Gyroscopic moment -ω × Iω.
         for i in range(3):
             j, k = (i + 1) % 3, (i + 2) % 3
             total[n, 3 + i] -= rate[n, j] * spin[k] - rate[n, k] * spin[j]
@@ -230,7 +234,7 @@ def fill_own_loads(
     water: WaterTable,
     total: FloatArray,
 ) -> None:
-    """All of the above, one after another: the whole load (n, 6) of boards in the water."""
+    """Fill in the whole load (n, 6) of boards from their motion, in all of the steps above."""
     surface_density, gradient, gravity, knots, cubics = water
     relative, flow = np.empty_like(position), np.empty_like(position)
     force, moment = np.empty_like(position), np.empty_like(position)

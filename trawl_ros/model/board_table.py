@@ -1,13 +1,13 @@
-"""The law of a board from a table: lift, drag and centre of pressure over the angle of attack.
+"""Law of a board from a table: lift, drag and centre of pressure over the angle of attack.
 
-Between its points the table follows monotone cubics, so that it has no peak that was not measured
-and a derivative everywhere. The straight lines of eq. 14 are added as corrections, which
-identification refits. Outside the table lift and moments fade and drag stays, as those of
-`board_law` do outside the range of eq. 14.
+The table is interpolated by monotone cubics: they add no peak between its points and have a
+derivative everywhere. The straight lines of eq. 14 are corrections to the table, which
+identification fits. Outside the table lift and moments fade and drag stays constant, as in
+`board_law` outside the range of eq. 14.
 
 Loads of a tilted board are measured along the axes of a flume tank. Most of the upward C_Z is the
-force across the board's face, which tilts with it. So the loads are turned into the board's axes,
-and the rest acts along the span. The tilt is the board's attitude, as it is in the tank.
+force normal to the board, which tilts with it. So the loads are rotated into the board's axes, and
+the remainder acts along the span. The tilt is the board's attitude, as in the tank.
 """
 
 from dataclasses import dataclass
@@ -17,13 +17,13 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.polars import Polar, Tilt
-from trawl_ros.model.board_law import SLIP_LIMIT, fading, settled
+from trawl_ros.model.board_law import SLIP_LIMIT_RAD, fading, settled
 from trawl_ros.model.compiled import alike, compiled, inner
 
 
 @dataclass(frozen=True, eq=False)
 class TableLaw:
-    """Law of a board that follows a polar."""
+    """Law of a board from its polar."""
 
     polar: Polar
 
@@ -34,13 +34,13 @@ class TableLaw:
 
     @cached_property
     def cubics(self) -> FloatArray:
-        """Polynomials (n, 3, 4) of lift, drag and centre of pressure behind each point."""
+        """Cubics (n, 3, 4) of lift, drag and centre of pressure above each point."""
         values = np.stack([self.polar.lift, self.polar.drag, self.polar.ahead], 1)
         return _cubics(self.polar.attack, values)
 
     @cached_property
     def tilts(self) -> tuple[FloatArray, ...]:
-        """Knots (m,) and polynomials (m, 5, 4) of heel, then of trim."""
+        """Knots (m,) and cubics (m, 5, 4) of heel, then of trim."""
         return *_tilt_table(self.polar.heel), *_tilt_table(self.polar.trim)
 
     def __call__(
@@ -51,7 +51,7 @@ class TableLaw:
         lean: FloatArray | float = 0.0,
         rise: FloatArray | float = 0.0,
     ) -> FloatArray:
-        """Force and moment coefficients (..., 6), as `board.coefficients_at` has them.
+        """Return force and moment coefficients (..., 6) as `board.coefficients_at` does.
 
         ``lean`` and ``rise`` (...) are the vertical parts of the outward normal and the forward
         axis, the sines of heel and trim.
@@ -65,8 +65,10 @@ class TableLaw:
 
 
 def _tilt_table(tilt: Tilt) -> tuple[FloatArray, FloatArray]:
-    """Knots and cubics over the sine of a tilt t: factor of lift, cos t - 1, sin t, C_Z sin t and
-    C_Z cos t. They end level, so that the derivative goes on where they end.
+    """Return knots and cubics over the sine of a tilt t.
+
+    Columns are the factor of lift, cos t - 1, sin t, C_Z sin t and C_Z cos t. They have zero slope
+    at both ends, so that the derivative is continuous there.
     """
     sine, upward = tilt.sine, tilt.upward
     cosine = np.sqrt(1 - sine**2)
@@ -76,8 +78,8 @@ def _tilt_table(tilt: Tilt) -> tuple[FloatArray, FloatArray]:
 
 
 def _cubics(knots: FloatArray, values: FloatArray) -> FloatArray:
-    """Polynomials (n, columns, 4) of monotone cubics behind each knot, the last being constant."""
-    # Imported here: it takes long, and boards by formula have no use for it.
+    """Return monotone cubics (n, columns, 4) above each knot; the last one is constant."""
+    # Imported here: the import is slow, and boards by formula do not need it.
     from scipy.interpolate import PchipInterpolator
 
     pieces = PchipInterpolator(knots, values).c
@@ -88,7 +90,7 @@ def _cubics(knots: FloatArray, values: FloatArray) -> FloatArray:
 
 @inner
 def _piece(knots: FloatArray, cubics: FloatArray, which: int, alpha: float) -> float:
-    """A column of the table at an angle; constant ahead of its first point."""
+    """Return a column of the table at an angle; it is constant below the first point."""
     place = 0
     while place + 1 < len(knots) and knots[place + 1] <= alpha.real:
         place += 1
@@ -102,7 +104,7 @@ def _piece(knots: FloatArray, cubics: FloatArray, which: int, alpha: float) -> f
 def _turned(
     knots: FloatArray, cubics: FloatArray, sine: float, force: float
 ) -> tuple[float, float]:
-    """Change of a force that a tilt turns, and the force up the span that it leaves."""
+    """Return the change of a force by a tilt, and the force along the span."""
     own = force * _piece(knots, cubics, 1, sine) + _piece(knots, cubics, 3, sine)
     return own, _piece(knots, cubics, 4, sine) - force * _piece(knots, cubics, 2, sine)
 
@@ -125,16 +127,16 @@ def _fill(
     low, high = knots[0], knots[-1]
     for n in range(len(attack)):
         alpha = settled(attack[n], low, high)
-        beta = settled(slip[n], -SLIP_LIMIT, SLIP_LIMIT)
+        beta = settled(slip[n], -SLIP_LIMIT_RAD, SLIP_LIMIT_RAD)
         fade = fading(attack[n], low, high)
         lift = _piece(knots, cubics, 0, alpha) + values[2] * alpha + values[3]
-        # Flow on the inner face meets as much board as on the outer.
+        # Drag is the same for flow on either face.
         folded = alpha if attack[n].real >= 0.0 else settled(-attack[n], low, high)
         drag = _piece(knots, cubics, 1, folded) + values[0] * folded + values[1]
         ahead = _piece(knots, cubics, 2, alpha)
         lift *= _piece(heel, heeled, 0, lean[n]) * _piece(trim, trimmed, 0, rise[n])
         cosine, sine = np.cos(alpha), np.sin(alpha)
-        # Heel turns the force across the board's face, trim that forward along its chord.
+        # Heel rotates the force normal to the board, trim the force forward along its chord.
         outward, span = _turned(heel, heeled, lean[n], lift * cosine + drag * sine)
         forward, more = _turned(trim, trimmed, rise[n], lift * sine - drag * cosine)
         lift += outward * cosine + forward * sine
@@ -143,10 +145,10 @@ def _fill(
         across = lift * cosine + drag * sine
         coefficients[n, 0] = drag if drag.real > 0.0 else 0 * drag
         coefficients[n, 1] = lift * fade
-        # Loads of eq. 12 act down.
+        # Loads of eq. 12 act downward.
         coefficients[n, 2] = (values[4] * beta - span) * fade + values[5]
         coefficients[n, 3] = (values[6] * alpha + values[7]) * fade
         coefficients[n, 4] = values[8] * beta * fade + values[9]
-        # C_z^M of eq. 12 turns the other way than a force ahead of the centre of gravity does.
+        # C_z^M of eq. 12 has the opposite sign of the moment of a force ahead of the centre.
         turning = -ahead * across + values[10] * alpha + values[11]
         coefficients[n, 5] = turning * fade

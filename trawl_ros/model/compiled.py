@@ -16,21 +16,22 @@ Given = ParamSpec('Given')
 Result = TypeVar('Result')
 Returned = TypeVar('Returned', covariant=True)
 
-# Calls from C, which nobody makes, would take a wrapper more.
-OPTIONS = {'error_model': 'numpy', 'no_cfunc_wrapper': True}
+# Nothing calls these functions from C, so that wrapper is not compiled.
+NUMBA_OPTIONS = {'error_model': 'numpy', 'no_cfunc_wrapper': True}
 
 COMPILATION.folder = FOLDER = loop_folder()
 
 
 class Compiled(Protocol[Returned]):
-    """Compiled function: it takes arrays by their place, real or complex, of which its
-    annotations name the real ones.
+    """Compiled function with positional arguments, real or complex arrays.
+
+    Annotations of the function name the real types only.
     """
 
     __name__: str
 
     def __call__(self, *given: object) -> Returned:
-        """Call it."""
+        """Call the function."""
         ...
 
 
@@ -40,45 +41,47 @@ def compiled(function: Callable[Given, Result]) -> Compiled[Result]:
 
 
 def inner(function: Callable[Given, Result]) -> Compiled[Result]:
-    """Compile a function that only compiled ones call: a wrapper for Python would take a fifth of
-    its compilation.
+    """Compile a function that is called by compiled ones only.
+
+    It gets no wrapper for Python, which would take a fifth of its compilation.
     """
     return _compiled(function, no_cpython_wrapper=True)
 
 
 def inlined(function: Callable[Given, Result]) -> Compiled[Result]:
-    """Write a function into the compiled one that calls it, before that is compiled: done apart,
-    its machine code would be optimised once by itself and again in each that calls it.
+    """Inline a function into its compiled callers, before those are compiled.
+
+    Compiled alone, its machine code would be optimised once by itself and again in each caller.
     """
     return _compiled(function, inline='always')
 
 
 def fused(function: Callable[Given, Result]) -> Compiled[Result]:
-    """Compile sums of products, which may be fused and taken in any order."""
+    """Compile sums of products, whose operations may be fused and reordered."""
     return _compiled(function, fastmath={'contract', 'reassoc', 'nsz'})
 
 
 def _compiled(function: Callable[Given, Result], **options: object) -> Compiled[Result]:
     # numba's types lack some of the options.
-    loop: Any = njit(**OPTIONS, **options)(function)  # type: ignore[call-overload]
+    loop: Any = njit(**NUMBA_OPTIONS, **options)(function)  # type: ignore[call-overload]
     if FOLDER.path is not None:
         settings: Any = config
         before, settings.CACHE_DIR = settings.CACHE_DIR, str(FOLDER.path)
-        # Where the folder was lost since it was chosen, the loop is compiled at each start.
+        # If the folder has vanished since it was chosen, the loop is compiled at each start.
         with suppress(RuntimeError):
             loop._cache = _LoopCache(function)
-        # Other packages keep theirs where they did.
+        # Other packages keep their own cache folder.
         settings.CACHE_DIR = before
     return cast(Compiled[Result], loop)
 
 
 class _LoopCache(FunctionCache):
-    """Cache that fails nobody: what is damaged is compiled again, and a full disk keeps nothing."""
+    """Cache that raises no errors: damaged files are compiled again, a full disk is ignored."""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         try:
             return super().load_overload(sig, target_context)
-        # Whatever a file that was cut short makes of its reading.
+        # A truncated file may raise anything.
         except Exception:
             with suppress(OSError):
                 self.flush()
@@ -90,7 +93,7 @@ class _LoopCache(FunctionCache):
 
 
 class _Steps(event.Listener):
-    """Listener to passes of the compiler, and to loops that are done."""
+    """Listener to passes of the compiler and to finished loops."""
 
     def on_start(self, step: Any) -> None:
         if step.kind == 'numba:compile':
@@ -107,20 +110,20 @@ for _kind in ('numba:compile', 'numba:run_pass'):
 
 
 def alike(*arrays: FloatArray) -> list[FloatArray]:
-    """Arrays of one kind, all real or all complex, as compiled loops take them."""
+    """Return arrays of one kind, all real or all complex, for compiled loops."""
     return as_kind(complex if stepped_among(*arrays) else float, *arrays)
 
 
 def stepped_among(*arrays: FloatArray) -> bool:
-    """True if one of the arrays is complex."""
+    """Return True if one of the arrays is complex."""
     return 'c' in [array.dtype.kind for array in arrays]
 
 
 def as_kind(kind: type[float] | type[complex], *arrays: FloatArray) -> list[FloatArray]:
-    """Arrays of the given kind, as compiled loops take them."""
+    """Return arrays of the given kind for compiled loops."""
     rows = []
     for array in arrays:
         row = np.ascontiguousarray(array, kind)
-        # A loop would be compiled once more for an array that cannot be written to.
+        # A read-only array has another type, for which numba would compile the loop again.
         rows.append(row if row.flags.writeable else row.copy())
     return rows

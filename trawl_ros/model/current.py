@@ -1,4 +1,4 @@
-"""Current of the water at a height, as compiled loops take it."""
+"""Current of the water at a height, for compiled loops."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from trawl_ros.model.compiled import compiled, inner
 def current_at(
     knots: FloatArray, cubics: FloatArray, z: float, flow: FloatArray, slope: FloatArray
 ) -> None:
-    """Current (3,) at one height and its derivative by height, from `Water.profile`."""
+    """Fill in the current (3,) at one height and its derivative by height, from `Water.profile`."""
     depth, place = -z.real, 0
     inside = knots[0] < depth < knots[-1]
     while place + 1 < len(knots) and knots[place + 1] <= depth:
@@ -28,15 +28,17 @@ def current_at(
 def fill_currents(
     knots: FloatArray, cubics: FloatArray, z: FloatArray, flow: FloatArray, slope: FloatArray
 ) -> None:
-    """Currents (n, 3) at heights (n,) and their derivatives by height."""
+    """Fill in currents (n, 3) at heights (n,) and their derivatives by height."""
     for n in range(len(z)):
         current_at(knots, cubics, z[n], flow[n], slope[n])
 
 
 @compiled
 def fill_cubics(depths: FloatArray, currents: FloatArray, cubics: FloatArray) -> None:
-    """Cubics (k - 1, 2, 4) of currents (k, 2) between k depths, two at least: PCHIP (Fritsch and
-    Butland 1984), as scipy's, whose interpolator takes a tenth of a millisecond to be made.
+    """Fill in cubics (k - 1, 2, 4) of currents (k, 2) between k ≥ 2 depths.
+
+    They are the monotone PCHIP of Fritsch and Butland (1984), as in scipy. Scipy's interpolator
+    takes 0.1 ms to build, which is too slow where each iteration changes the current.
     """
     last = len(depths) - 1
     wide = np.diff(depths)
@@ -63,7 +65,7 @@ def fill_cubics(depths: FloatArray, currents: FloatArray, cubics: FloatArray) ->
 
 @inner
 def _end_slope(wide: float, next_wide: float, steep: float, next_steep: float) -> float:
-    """Slope at an end: of the parabola through three points, where that keeps the shape."""
+    """Return the slope at an end: that of the parabola through three points, if monotone."""
     slope = ((2.0 * wide + next_wide) * steep - wide * next_steep) / (wide + next_wide)
     if np.sign(slope) != np.sign(steep):
         return 0.0

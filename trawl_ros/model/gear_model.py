@@ -1,4 +1,4 @@
-"""A gear as arrays: nodes, boards and the bars between them, in one numbering.
+"""Gear as arrays: nodes, boards and the bars between them, in one numbering.
 
 Points are numbered nodes first (free), then the boards' fastening points (warp, upper bridle,
 lower bridle; port board, then starboard), then the two towing blocks. Degrees of freedom are
@@ -15,24 +15,24 @@ from trawl_ros.gear.polars import polar_of
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board import Board
 from trawl_ros.model.board_table import TableLaw
-from trawl_ros.model.hooks import CoefficientModifier, InTurn, NodeForce
-from trawl_ros.model.kite import Kite, LiftingBodies
+from trawl_ros.model.hooks import CoefficientModifier, ComposedModifier, NodeForce
+from trawl_ros.model.kite import Kite
 from trawl_ros.model.line import BarProperties
-from trawl_ros.model.net.catch import CodendCatch, place_catch
+from trawl_ros.model.net.catch import CodendCatch
 from trawl_ros.model.net.kite_nodes import KiteNodes
 from trawl_ros.model.net.netting import build_net
 from trawl_ros.model.net.sheets import NetSheets, sheets_of
-from trawl_ros.model.net.wake import viscous, viscous_knots
 from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.pattern import SparsityPattern, build_pattern
 from trawl_ros.model.rigging import (
     GearBuilder,
     add_bridles,
+    add_net,
     add_sweeps,
+    add_warps,
     bridle_ends_of,
-    hung_places,
+    lumps_of,
     rigging_nodes,
-    rope_row,
 )
 from trawl_ros.model.water import Water, build_water
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -43,13 +43,24 @@ OUTWARD = np.array([1.0, -1.0])
 
 @dataclass(frozen=True)
 class NodeLayout:
-    """Node numbering: the nodes of warps, bridles, net, headrope, footrope and kite.
+    """Node numbers of warps, bridles, net, headrope, footrope and kite.
 
-    ``warps`` and ``bridles`` are tuples of node arrays (warps from block to board, port and
-    starboard; bridles from board to net in the order of the gear file, port's, then
-    starboard's), ``bridle_ends`` the net's nodes at which these end, ``sweeps`` the nodes of the
-    sweeps from backstrops to bridles, none where there are no sweeps, ``net`` the net's nodes;
-    ``lines`` (name, point numbers, bar numbers) of everything to be drawn.
+    Attributes
+    ----------
+    warps
+        Nodes of the port and of the starboard warp, from block to board.
+    bridles
+        Nodes of the bridles, from board to net, in the order of the gear file; port first.
+    bridle_ends
+        Nodes of the net at which the bridles end.
+    sweeps
+        Nodes of the sweeps, from backstrops to bridles; empty for gear without sweeps.
+    net, headrope, footrope, kite
+        Nodes of the net, of both ropes along it, and of the kite.
+    top_warp_bars
+        Highest bar of either warp.
+    lines
+        Name, point numbers and bar numbers of everything to be drawn.
     """
 
     warps: tuple[IntArray, IntArray]
@@ -72,8 +83,18 @@ class NodeLayout:
 
 @dataclass(frozen=True)
 class BarGroup:
-    """Some k bars: their numbers, the ``points`` at which they end, these ``ends`` (k, 2) as places
-    among the points, and their properties.
+    """Group of k bars.
+
+    Attributes
+    ----------
+    bars
+        Their numbers (k,).
+    points
+        Numbers of the points at which they end.
+    ends
+        Ends (k, 2) as places among ``points``.
+    properties
+        Their properties.
     """
 
     bars: IntArray
@@ -82,7 +103,7 @@ class BarGroup:
     properties: BarProperties
 
     def rows(self, nodes: int) -> IntArray:
-        """Degrees of freedom of those points that are nodes, of so many in the gear."""
+        """Return the degrees of freedom of the points that are nodes, in a gear of ``nodes``."""
         free = self.points[self.points < nodes]
         every: IntArray = (3 * free[:, None] + np.arange(3)).ravel()
         return every
@@ -92,13 +113,38 @@ class BarGroup:
 class GearModel:
     """Everything the forces need, for ``n`` nodes and ``m`` bars.
 
-    ``ends`` (m, 2) are point numbers; ``rest`` (m,) unstretched lengths; ``warp_side`` (m,) is
-    0 or 1 for the bars of a warp, whose length is ``warp length / warp_segments``, else -1.
-    Node lumps: ``lump_mass`` kg, ``lump_volume`` m³, ``lump_drag_area`` C_D S m² and
-    ``lump_viscous_area`` m² √(m/s) of `lump_pass`, ``lump_added`` kg per kg/m³ of water; ``floats``
-    (4, n) are those of the floats among them, in this order. ``sheets`` are those of the netting at
-    the nodes, ``node_forces`` lift on ropes and forces beyond the paper's, ``catch`` what lies in
-    the codend.
+    Attributes
+    ----------
+    gear, water, board, kite, coefficients
+        Record of the gear file, the water, properties of boards and kite, and the coefficients of
+        eq. 36.
+    bars
+        Properties of the bars.
+    ends : (m, 2) array
+        Point numbers of both ends of each bar.
+    rest : (m,) array
+        Unstretched lengths, m.
+    warp_side : (m,) array
+        0 or 1 for the bars of a warp, whose length is ``warp length / warp_segments``, else -1.
+    lump_mass, lump_volume, lump_drag_area, lump_viscous_area, lump_added : (n,) arrays
+        Lumps at the nodes: kg, m³, C_D S in m², its viscous part in m² √(m/s) as in `lump_pass`,
+        and added mass in kg per kg/m³ of water.
+    floats : (4, n) array
+        Part of mass, volume, drag area and added mass of the lumps that belongs to floats.
+    layout
+        Node numbers of the parts of the gear.
+    sheets
+        Sheets of netting at the nodes.
+    first_guess : (n, 3) array
+        Positions of the net's nodes as drawn, m; NaN for all other nodes.
+    net_mesh
+        Nodes and bars of the net alone.
+    pattern
+        Sparsity pattern of the matrices.
+    node_forces
+        Lift on ropes, and forces beyond the paper's.
+    catch
+        Catch in the codend.
 
     Examples
     --------
@@ -148,7 +194,7 @@ class GearModel:
 
     @property
     def paired(self) -> bool:
-        """True for a gear that two ships tow without boards."""
+        """True for a pair trawl, which two ships tow without boards."""
         return self.gear.pair is not None
 
     @cached_property
@@ -158,7 +204,7 @@ class GearModel:
 
     @cached_property
     def rigging(self) -> 'BarGroup':
-        """Bars of the warps, and the others at boards."""
+        """Bars of the warps, and all other bars at boards."""
         rigged = self.pattern.rigged
         return self._group(np.concatenate([*self.warp_bars, rigged[self.warp_side[rigged] < 0]]))
 
@@ -183,23 +229,28 @@ class GearModel:
         return inside[:, 0] & inside[:, 1]
 
     def with_coefficients(self, values: FloatArray) -> 'GearModel':
-        """The same gear with other board coefficients, in the order of eq. 36."""
+        """Return the gear with other board coefficients, in the order of eq. 36."""
         return replace(self, coefficients=np.asarray(values))
 
     def with_board(self, **changes: object) -> 'GearModel':
-        """The same gear with a changed board, such as its points or installation angles."""
-        # Names and types are the caller's: `replace` refuses what a board has not.
+        """Return the gear with a changed board, such as its points or installation angles."""
+        # `replace` refuses names that a board does not have.
         board = replace(self.board, **changes)  # type: ignore[arg-type]
         return replace(self, board=board)
 
     def with_modifier(self, modifier: CoefficientModifier) -> 'GearModel':
-        """The same gear whose boards' coefficients are modified, after any other modifier."""
-        bend = self.board.bend
-        return self.with_board(bend=modifier if bend is None else InTurn(bend, modifier))
+        """Return the gear with a modifier of the boards' coefficients, applied after any other."""
+        first = self.board.coefficient_modifier
+        both = modifier if first is None else ComposedModifier(first, modifier)
+        return self.with_board(coefficient_modifier=both)
 
     def with_net(self, drag: float, weight: float) -> 'GearModel':
-        """The same gear with this many times the drag coefficients and the weight in water of all
-        netting and ropes of the net.
+        """Return the gear with scaled drag and weight in water of the net and its ropes.
+
+        Parameters
+        ----------
+        drag, weight
+            Factors on the drag coefficients and on the weight in water.
         """
         net = self.net_bars
         bars, water = self.bars, self.water.density * self.bars.volume
@@ -215,7 +266,7 @@ class GearModel:
 
 
 def build_board(gear: GearRecord) -> Board:
-    """The board of a gear file."""
+    """Return the board of a gear file."""
     record = gear.board
     polar = polar_of(record)
     i = record.inertia
@@ -248,43 +299,18 @@ def build_board(gear: GearRecord) -> Board:
     )
 
 
-def _frame_rests(gear: GearRecord, mesh: NetMesh) -> tuple[list[float], list[float], list[float]]:
-    """Rest lengths along headrope, footrope, and the ropes between the wing tips of a side."""
-    record, plan = gear.netting, gear.netting.plan
-    if plan is not None and mesh.frame is not None:
-        names = ('headrope', 'footrope', 'side_rope')
-        lengths = (rope and rope.length_m for rope in (getattr(gear, name) for name in names))
-        headrope, footrope, side = (
-            rim.rests(plan, length, name).tolist()
-            for rim, length, name in zip(mesh.frame, lengths, names, strict=True)
-        )
-        return headrope, footrope, side
-    assert record.wing_edge_hanging is not None
-    assert record.wing_end_m is not None
-    wing_rows, bars = record.around // 12, len(mesh.wing_ends[0]) - 1
-    edge = record.wing_edge_hanging * mesh.edge_rest
-    rests = []
-    for rope, rim in ((gear.headrope, mesh.headrope), (gear.footrope, mesh.footrope)):
-        # Wing edges as hung, the rest on the bosom.
-        assert rope.length_m is not None
-        inner = len(rim) - 1 - 2 * wing_rows
-        bosom = (rope.length_m - 2 * wing_rows * edge) / inner
-        rests.append([edge] * wing_rows + [bosom] * inner + [edge] * wing_rows)
-    return rests[0], rests[1], [record.wing_end_m / bars] * bars
-
-
 def build_model(gear: GearRecord) -> GearModel:
-    """Turn a gear file's record into arrays.
+    """Build the arrays of a gear from its record.
 
     Parameters
     ----------
     gear
-        From `load_gear`, perhaps cut finer or coarser with `GearRecord.refined`.
+        Record from `load_gear`, optionally with another mesh by `GearRecord.refined`.
 
     Returns
     -------
     GearModel
-        Without state: any number of tows may share it.
+        Immutable model without state; any number of tows may share it.
 
     Raises
     ------
@@ -299,81 +325,20 @@ def build_model(gear: GearRecord) -> GearModel:
     (169, True)
     """
     water, board = build_water(gear), build_board(gear)
-    # Without a chord both points of the kite are the headrope's centre.
+    # A kite without a chord has both of its points at the headrope's centre.
     chord = None if gear.kite is None else gear.kite.chord_m or 0.0
     mesh = build_net(gear.netting, chord)
     build = GearBuilder()
-    warp_row = rope_row(gear.warp, water)
-    segments = gear.warp.segments
-    warps, top_bars = [], []
-    for side, name in enumerate(('port_warp', 'starboard_warp')):
-        own = build.nodes(segments - 1)
-        warps.append(own)
-        points = [build.BLOCK - side, *own, build.FASTENING - 3 * side]
-        top_bars.append(build.rope(name, points, [1.0] * segments, warp_row, side)[0])
+    warps, top_bars = add_warps(build, gear, water)
     net_first = build.count + 2 * rigging_nodes(gear)
     bridle_ends = [net_first + node for node in bridle_ends_of(gear, mesh)]
     sweeps = add_sweeps(build, gear, water)
     bridles = add_bridles(build, gear, water, bridle_ends, sweeps)
     net = build.nodes(len(mesh.positions))
 
-    record = gear.netting
-    added = (record.added_mass_normal, 0.0)
-    first, before, nodes = len(build.ends), len(build.lines), net.tolist()
-    for bar in mesh.bars:
-        # The codend's drag is on its nodes, its volume and stiffness in its bars.
-        area = 0.0 if bar.group == 'codend' else bar.area
-        row = (bar.stiffness, record.damping_time_s, bar.mass, bar.volume, area, np.pi * area)
-        drag = (record.normal_drag * bar.normal, record.friction * bar.sliding)
-        growth = viscous(record, bar.diameter)
-        build.bar(
-            nodes[bar.start], nodes[bar.end], bar.rest, (*row, *drag, *added, bar.bow, *growth)
-        )
-    rests_of, sides = _frame_rests(gear, mesh), mesh.wing_ends
-    for name, rope, rim, rests in (
-        ('headrope', gear.headrope, mesh.headrope, rests_of[0]),
-        ('footrope', gear.footrope, mesh.footrope, rests_of[1]),
-        ('port_wing_end', gear.side_rope or gear.headrope, sides[0], rests_of[2]),
-        ('starboard_wing_end', gear.side_rope or gear.headrope, sides[1], rests_of[2]),
-    ):
-        build.rope(name, [int(net[k]) for k in rim], rests, rope_row(rope, water))
-
-    lumps = np.zeros((4, build.count))
-    lumps[1, net] += mesh.knot_volume
-    lumps[2, net] += mesh.knot_area * record.knot_drag + mesh.line_drag_area
-    lumps[3, net] += mesh.knot_volume * record.knot_added_mass
-    viscous_area = np.zeros(build.count)
-    viscous_area[net] = mesh.line_viscous_area + viscous_knots(record, 1.0) * mesh.knot_root
-    catch = None if gear.catch is None else place_catch(gear.catch, record, mesh)
-    if gear.catch is not None and catch is not None:
-        # Where the codend is full the water goes around it, which the drag of the catch counts.
-        lumps[2, net] *= 1.0 - catch.covered
-        viscous_area[net] *= 1.0 - catch.covered
-        lumps[:, net] += catch.lumps(gear.catch, water.density)
-    # Knots are made of the twine they join: their mass is the first body section's density.
-    lumps[0, net] += mesh.knot_volume * mesh.knot_density
-    clump, floats = gear.clump, gear.floats
-    buoyant = np.zeros(lumps.shape)
-    for rim, force, density, drag_area in (
-        (mesh.footrope, clump.weight_in_water_n, clump.density_kg_m3, clump.drag_area_m2),
-        (mesh.headrope, -floats.buoyancy_n, floats.density_kg_m3, floats.drag_area_m2),
-    ):
-        volume = force / water.gravity / (density - water.density)
-        # A compact body: half its volume of added mass, as a sphere.
-        for tip in (net[rim[0]], net[rim[-1]]):
-            body = np.array([density * volume, volume, drag_area, 0.5 * volume])
-            (buoyant if rim is mesh.headrope else lumps)[:, tip] += body
-    lifting: list[NodeForce] = []
-    for item in gear.hung:
-        for nodes, shares, force in hung_places(build, item):
-            if item.lift_area_m2:
-                on = nodes[shares > 0.0]
-                lifting.append(LiftingBodies(on, item.lift_area_m2 * shares[shares > 0.0], water))
-            volume = force / water.gravity / (item.density - water.density)
-            body = np.array([item.density * volume, volume, item.drag_area_m2, 0.5 * volume])
-            # A rope passes each node once.
-            (buoyant if force < 0.0 else lumps)[:, nodes] += body[:, None] * shares
-    lumps += buoyant
+    first, before = len(build.ends), len(build.lines)
+    add_net(build, gear, water, mesh, net)
+    lumps = lumps_of(build, gear, water, mesh, net)
     guess = np.full((build.count, 3), np.nan)
     guess[net] = mesh.positions
     ends = build.resolved(build.ends)
@@ -395,14 +360,14 @@ def build_model(gear: GearRecord) -> GearModel:
         ends=ends,
         rest=np.array(build.rest),
         warp_side=np.array(build.side),
-        lump_mass=lumps[0],
-        lump_volume=lumps[1],
-        lump_drag_area=lumps[2],
-        lump_viscous_area=viscous_area,
-        lump_added=lumps[3],
-        floats=buoyant,
+        lump_mass=lumps.columns[0],
+        lump_volume=lumps.columns[1],
+        lump_drag_area=lumps.columns[2],
+        lump_viscous_area=lumps.viscous_area,
+        lump_added=lumps.columns[3],
+        floats=lumps.floats,
         layout=NodeLayout(
-            warps=(warps[0], warps[1]),
+            warps=warps,
             bridles=tuple(bridles),
             bridle_ends=np.array(bridle_ends),
             sweeps=tuple(sweeps),
@@ -417,8 +382,8 @@ def build_model(gear: GearRecord) -> GearModel:
         first_guess=guess,
         net_mesh=mesh,
         pattern=build_pattern(build.count, ends, kite.nodes),
-        node_forces=tuple(lifting),
-        catch=catch,
+        node_forces=lumps.lifting,
+        catch=lumps.catch,
     )
 
 

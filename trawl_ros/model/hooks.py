@@ -1,8 +1,8 @@
 """Extension points for physics beyond the paper: coefficient modifiers and node forces.
 
-Water enters as a profile of currents, ropes and netting through the arrays of `BarProperties`;
-these two are for what neither can say. Both are called with complex numbers as well, for their
-derivatives are taken by the complex step.
+Water is changed through its profile of currents, ropes and netting through `BarProperties`; these
+two are for everything else. Both are called with complex numbers as well, because their derivatives
+are taken by the complex step.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from typing import Protocol
 from trawl_ros.core.arrays import FloatArray, IntArray
 
 DRAG, LIFT = 0, 1
-"""Places of C_x^F and C_y^F among the coefficients that a board's law gives."""
+"""Places of C_x^F and C_y^F among the coefficients of a board's law."""
 
 
 class CoefficientModifier(Protocol):
@@ -25,19 +25,18 @@ class CoefficientModifier(Protocol):
         Parameters
         ----------
         coefficients
-            As eq. 14 has them (..., 6).
+            Coefficients (..., 6) of eq. 14.
         attack, slip
             α and β (...), rad.
         lean
-            Vertical part (...) of the board's outward normal: positive where its outer face looks
-            up.
+            Vertical part (...) of the board's outward normal: positive if its outer face looks up.
         """
         ...
 
 
 @dataclass(frozen=True)
-class InTurn:
-    """Coefficient modifier that applies one after another."""
+class ComposedModifier:
+    """Coefficient modifier that applies two others, one after the other."""
 
     first: CoefficientModifier
     then: CoefficientModifier
@@ -50,7 +49,7 @@ class InTurn:
 
 
 class NodeForce(Protocol):
-    """A force on some nodes, each by its own position and velocity alone."""
+    """Force on some nodes; each depends on the position and velocity of its own node only."""
 
     @property
     def nodes(self) -> IntArray:
@@ -58,5 +57,5 @@ class NodeForce(Protocol):
         ...
 
     def __call__(self, positions: FloatArray, velocities: FloatArray) -> FloatArray:
-        """Force (k, 3), N, at positions (m) and velocities (m/s), both (k, 3) in ``map`` axes."""
+        """Return the force (k, 3), N, at positions (m) and velocities (m/s), (k, 3) in ``map``."""
         ...

@@ -1,6 +1,6 @@
-"""Kites: the canvas kite on the headrope (eq. 29-33), and those on ropes whose lift is given.
+"""Kites: the canvas kite on the headrope (eq. 29-33), and lifting bodies of given lift on ropes.
 
-The former is compiled for complex numbers as the boards' law is.
+The canvas kite is compiled for complex numbers, as the boards' law is.
 """
 
 from dataclasses import dataclass
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.model.bar import SPEED_ROUNDING_M_S
 from trawl_ros.model.bar_pass import WaterTable, water_of
 from trawl_ros.model.board_law import angle_at
 from trawl_ros.model.compiled import as_kind, compiled, stepped_among
@@ -15,15 +16,19 @@ from trawl_ros.model.current import current_at
 from trawl_ros.model.numerics import length
 from trawl_ros.model.water import Water
 
-STILL = 1e-6
-"""Speed (m/s) below which lift on ropes is rounded off, so that its derivative exists."""
-
 
 @dataclass(frozen=True)
 class Kite:
-    """Properties of a kite: area (m²), mass (kg), volume (m³), setting angle (rad), whether it
-    pitches with the line through its two carrying nodes, slope (1/rad) and limit of its normal
-    force, and its base drag.
+    """Properties of a kite.
+
+    Attributes
+    ----------
+    area, mass, volume, setting
+        Area (m²), mass (kg), volume (m³) and setting angle (rad).
+    pitched
+        True if it pitches with the line through its two carrying points.
+    normal_slope, normal_limit, drag_base
+        Slope (1/rad) and limit of its normal coefficient, and its base drag coefficient.
     """
 
     area: float
@@ -37,9 +42,10 @@ class Kite:
 
 
 def attack_angle(kite: Kite, front: FloatArray, rear: FloatArray, flow: FloatArray) -> FloatArray:
-    """Attack angle a_c (rad): pitch of the line through both carrying nodes in the vertical
-    plane (eq. 31) where the kite is pitched, plus the rise of the flow (eq. 32), plus the setting
-    angle.
+    """Return the attack angle a_c (rad).
+
+    It is the sum of the rise of the flow (eq. 32) and the setting angle and, for a pitched kite,
+    the pitch of the line through both carrying points in the vertical plane (eq. 31).
     """
     given = front, rear, flow
     attack = np.empty(front.shape[:-1], complex)
@@ -76,10 +82,10 @@ def load(
     rear_velocity: FloatArray,
     water: Water,
 ) -> FloatArray:
-    """Force (..., 3) N on the kite: lift against gravity, drag along the flow, weight and
-    buoyancy (eq. 30, 33). Its carrying nodes share it equally.
+    """Return the force (..., 3) N on the kite: lift, drag, weight and buoyancy (eq. 30, 33).
 
-    The force is normal to the canvas: with s = ``normal_slope`` sin a and the limit N,
+    Lift acts upward, drag along the flow; both carrying points take half of the force. The
+    hydrodynamic force is normal to the canvas: with s = ``normal_slope`` sin a and the limit N,
     C_N = s / (1 + (s / N)⁴)^¼, C_L = C_N cos a and C_D = ``drag_base`` + C_N sin a.
     """
     given = front, rear, front_velocity, rear_velocity
@@ -124,7 +130,7 @@ def fill_loads(
         speed_square = flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2
         pressure = 0.5 * here * area
         straight = normal_slope * np.sin(attack[n])
-        # Products and roots, for a complex power of a negative number has an imaginary part.
+        # Products and roots: a complex power of a negative number has an imaginary part.
         square = (straight / normal_limit) * (straight / normal_limit)
         normal = straight / np.sqrt(np.sqrt(1.0 + square * square))
         drag = drag_base + normal * np.sin(attack[n])
@@ -136,16 +142,16 @@ def fill_loads(
 
 @dataclass(frozen=True)
 class LiftingBodies:
-    """Node force: lift ½ ρ v² C_L S, at right angles to the flow and as far upward as that allows.
+    """Node force: lift ½ ρ v² C_L S normal to the flow, in the vertical plane of the flow.
 
     Attributes
     ----------
     nodes : (k,) array
         Numbers of the nodes, each once.
     area : (k,) array
-        C_L S on each of them, m²; negative for what dives.
+        C_L S on each of them, m²; negative for depressors.
     water
-        Its density and currents.
+        Water with its density and currents.
     """
 
     nodes: IntArray
@@ -153,11 +159,11 @@ class LiftingBodies:
     water: Water
 
     def __call__(self, positions: FloatArray, velocities: FloatArray) -> FloatArray:
-        """Lift on the nodes (k, 3), N."""
+        """Return the lift on the nodes (k, 3), N."""
         height = positions[..., 2]
         flow = self.water.current(height) - velocities
-        speed, level = length(flow, STILL), length(flow[..., :2], STILL)
-        # Of the unit vector upward what lies across the flow; its length is level / speed.
+        speed, level = (length(u, SPEED_ROUNDING_M_S) for u in (flow, flow[..., :2]))
+        # Component of the upward unit vector normal to the flow; its length is level / speed.
         upward = np.array([0.0, 0.0, 1.0])
         across = speed[..., None] ** 2 * upward - flow[..., 2:] * flow
         head = 0.5 * self.water.density_at(height) * self.area * speed / level

@@ -19,11 +19,22 @@ from trawl_ros.model.water import Water
 class BarProperties:
     """Properties of ``n`` bars, each an array (n,).
 
-    ``stiffness`` EA (N); ``damping_time`` c_l l0 / EA (s); ``mass`` (kg/m); ``volume`` (m²,
-    that is m³/m); ``normal_area`` S_N and ``wet_area`` S_f (m²/m); ``normal_drag`` C_N90 and
-    ``friction`` C_f; ``added_normal`` C_mn = C_mb and ``added_tangential`` C_mt of eq. 26;
-    ``bow`` of `bar.bowed_at` (dimensionless), 0 for bars that stay straight; ``normal_viscous`` and
-    ``friction_viscous`` (√(m/s)) of `bar.drag_at`, 0 for coefficients that are constant.
+    Attributes
+    ----------
+    stiffness, damping_time
+        EA (N) and c_l l0 / EA (s).
+    mass, volume
+        Mass (kg/m) and volume (m³/m).
+    normal_area, wet_area
+        S_N and S_f (m²/m).
+    normal_drag, friction
+        C_N90 and C_f.
+    added_normal, added_tangential
+        C_mn = C_mb and C_mt of eq. 26.
+    bow
+        Dimensionless sag of `bar.bowed_at`; 0 for bars that stay straight.
+    normal_viscous, friction_viscous
+        Viscous parts (√(m/s)) of `bar.drag_at`; 0 for constant coefficients.
     """
 
     stiffness: FloatArray
@@ -50,15 +61,24 @@ class BarProperties:
         return tuple(vars(self).values())
 
     def chosen(self, bars: IntArray) -> 'BarProperties':
-        """The properties of some of the bars."""
+        """Return the properties of some of the bars."""
         return BarProperties(*(values[bars] for values in self.columns))
 
 
 @dataclass(frozen=True)
 class BarMotion:
-    """Motion of bars: vector from end i to end j (n, 3), both ends' relative velocity
-    ``stretching`` = v_j - v_i, mean velocity and mean height of the two ends, unstretched
-    length ``rest`` (n,) and its rate of change ``rest_rate``.
+    """Motion of ``n`` bars from end i to end j.
+
+    Attributes
+    ----------
+    vector, stretching : (n, 3) arrays
+        Vector from i to j (m), and relative velocity v_j - v_i (m/s).
+    velocity : (n, 3) array
+        Mean velocity of both ends, m/s.
+    height : (n,) array
+        Mean height of both ends, m.
+    rest, rest_rate : (n,) arrays
+        Unstretched length (m) and its rate (m/s).
     """
 
     vector: FloatArray
@@ -70,7 +90,7 @@ class BarMotion:
 
 
 def taut(strain: FloatArray, bow: float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """`taut_at` for an array of strains."""
+    """Return the results of `taut_at` for an array of strains."""
     (flat,) = alike(np.ravel(strain))
     value, slope, curve = np.empty_like(flat), np.empty_like(flat), np.empty(flat.shape)
     _taut(flat, bow, value, slope, curve)
@@ -87,10 +107,10 @@ def _taut(
 
 
 def tension(bars: BarProperties, motion: BarMotion) -> tuple[FloatArray, FloatArray]:
-    """Tension (n,) in N, positive in pull, and unit vector (n, 3) along the bar (eq. 20, 21).
+    """Return tension (n,) in N, and unit vector (n, 3) along the bar (eq. 20, 21).
 
-    The damping of eq. 21 acts on the rate of strain, so that paying out does not brake. A rope is
-    slack where strain and damping together are below zero, so that it never pushes.
+    The damping of eq. 21 acts on the strain rate, so that paying out causes no damping force. A
+    rope is slack if strain and damping together are negative, so that it never pushes.
     """
     given = alike(
         bars.stiffness,
@@ -132,7 +152,7 @@ def _tension(
 
 
 def drag(bars: BarProperties, motion: BarMotion, along: FloatArray, water: Water) -> FloatArray:
-    """Hydrodynamic force (n, 3) in N on whole bars (eq. 23, 24)."""
+    """Return the hydrodynamic force (n, 3) in N on whole bars (eq. 23, 24)."""
     given = alike(
         bars.normal_drag * bars.normal_area,
         bars.friction * bars.wet_area,

@@ -1,35 +1,35 @@
-"""One pass over the nodes of a gear: knots, floats and weights (eq. 22, 28), lift of the sheets of
-netting at nodes, and their slopes.
+"""One pass over the nodes of a gear: lumps, sheets of netting, and their derivatives.
 
-The lift that a sheet has by its solidity is added to the loads of its bars. With the area a of the
-sheet that belongs to a node (a vector across it), its twine A, the flow u and the coefficient κ,
+Lumps are knots, floats and weights (eq. 22, 28). The lift of a sheet by its solidity is added to
+the loads of its bars. With the area a of the sheet of a node (a vector normal to it), its twine A,
+the flow u and the coefficient κ,
 
     F = ½ ρ κ A² / (|a|² + A²) (u · a / |a|) (|u| a - (a · u) u / |u|)
 
 is a load across the flow of ½ ρ κ S² / (1 + S²) |a| |u|² sin θ cos θ, with the solidity
-S = A / |a|. The area is d₁ × d₂; both sides are weighted sums of the places of the node and of
-those tied to it, so that its slopes lie on the bars' pattern.
+S = A / |a|. The area is d₁ × d₂. Both sides d are weighted sums of the positions of the node and of
+its neighbours, so that its derivatives lie on the pattern of the bars.
 """
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.model.bar import STILL
+from trawl_ros.model.bar import SPEED_ROUNDING_M_S
 from trawl_ros.model.bar_pass import WaterTable
 from trawl_ros.model.compiled import compiled, inner
 from trawl_ros.model.current import current_at
 
 MIN_SHEET_AREA_M2 = 1e-4
-"""Area (m²) below which a sheet counts as closed, so that its direction has a derivative."""
+"""Area below which that of a sheet is rounded off, so that its direction has a derivative."""
 
 
 @inner
 def flow_past(
     x: FloatArray, v: FloatArray, n: int, water: WaterTable, flow: FloatArray, shear: FloatArray
 ) -> float:
-    """Fill in the flow (3,) past a node and its change per height; return its softened square."""
+    """Fill in the flow (3,) past a node and its change with height; return its rounded square."""
     current_at(water[3], water[4], x[n, 2], flow, shear)
-    square: float = STILL**2 + 0 * x[n, 2]
+    square: float = SPEED_ROUNDING_M_S**2 + 0 * x[n, 2]
     for i in range(3):
         flow[i] -= v[n, i]
         square += flow[i] ** 2
@@ -80,7 +80,7 @@ def fill_lump_slopes(
         speed = np.sqrt(square)
         viscous = viscous_area[n] * np.sqrt(speed)
         factor = 0.5 * here * (drag_area[n] * speed + viscous)
-        # Slope of this factor by the flow, over the flow.
+        # Derivative of this factor by the flow, over the flow.
         growth = 0.5 * here * (drag_area[n] * speed + 0.5 * viscous) / square
         for i in range(3):
             by_height = -gradient / here * factor * flow[i]
@@ -125,7 +125,7 @@ def add_sheet_forces(
     water: WaterTable,
     total: FloatArray,
 ) -> None:
-    """Add the lift of sheets to the nodes ``around[:, 0]`` that they belong to."""
+    """Add the lift of sheets to their own nodes ``around[:, 0]``."""
     density, gradient, _, _, _ = water
     flow, shear = np.empty(3, x.dtype), np.empty(3)
     long, wide, area = np.empty(3, x.dtype), np.empty(3, x.dtype), np.empty(3, x.dtype)
@@ -159,8 +159,10 @@ def add_sheet_slopes(
     stiffness_data: FloatArray,
     damping_data: FloatArray,
 ) -> None:
-    """The same, with K = -∂F/∂x and C = -∂F/∂v of the sheets; ``slots`` (n, m, 3, 3) are those of
-    the blocks of their own node's force by the places of all nodes around it.
+    """Add lift as `add_sheet_forces` does, with K = -∂F/∂x and C = -∂F/∂v of the sheets.
+
+    ``slots`` (n, m, 3, 3) are those of the blocks of the own node's force by the positions of all
+    nodes around it.
     """
     density, gradient, _, _, _ = water
     flow, shear, force = np.empty(3), np.empty(3), np.empty(3)

@@ -1,7 +1,7 @@
-"""Mathematics shared by the physics, all of it safe under a complex step.
+"""Mathematics shared by the physics; all of it works with the complex step.
 
-A complex step differentiates a function to rounding: f'(x) = Im f(x + i h) / h. It needs
-every operation to be analytic, which numpy's ``abs``, ``norm`` and ``arctan2`` are not.
+The complex step differentiates a function to rounding: f'(x) = Im f(x + i h) / h (Squire and
+Trapp 1998). Every operation must be analytic; numpy's ``abs``, ``norm`` and ``arctan2`` are not.
 """
 
 from typing import cast
@@ -11,32 +11,35 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 
 STEP = 1e-30
-"""Size of the imaginary step; no difference is taken, so it may be this small."""
+"""Imaginary step h; no difference is taken, so it causes no cancellation."""
 
 
 def stepped(values: FloatArray, direction: FloatArray) -> FloatArray:
-    """Values after an imaginary step, which the physics takes for real ones."""
+    """Return values with an imaginary step along a direction; typed as real for the physics."""
     return cast(FloatArray, values + 1j * STEP * direction)
 
 
 def dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Scalar product along the last axis, without conjugation."""
+    """Return the scalar product along the last axis, without conjugation."""
     product: FloatArray = np.einsum('...i,...i->...', a, b)
     return product
 
 
 def length(a: FloatArray, floor: float = 0.0) -> FloatArray:
-    """Euclidean length along the last axis; ``floor`` keeps its derivative finite at zero."""
+    """Return the Euclidean length along the last axis.
+
+    A positive ``floor`` keeps the derivative finite at zero.
+    """
     return np.sqrt(dot(a, a) + floor * floor)
 
 
 def outer(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Dyadic product along the last axis, shape (..., 3, 3)."""
+    """Return the dyadic product along the last axis, shape (..., 3, 3)."""
     return a[..., :, None] * b[..., None, :]
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Vector product along the last axis; five times as fast as numpy's on few vectors."""
+    """Return the vector product along the last axis, five times as fast as numpy on few vectors."""
     product = np.empty(np.broadcast_shapes(a.shape, b.shape), np.result_type(a, b))
     ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
     bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
@@ -47,7 +50,7 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def skew(a: FloatArray) -> FloatArray:
-    """Matrix S(a) with S(a) b = a × b, shape (..., 3, 3)."""
+    """Return the matrix S(a) with S(a) b = a × b, shape (..., 3, 3)."""
     matrix = np.zeros((*a.shape, 3), a.dtype)
     matrix[..., 2, 1] = a[..., 0]
     matrix[..., 0, 2] = a[..., 1]
@@ -56,5 +59,5 @@ def skew(a: FloatArray) -> FloatArray:
 
 
 def transpose(matrix: FloatArray) -> FloatArray:
-    """Transpose of the last two axes."""
+    """Return the transpose of the last two axes."""
     return np.swapaxes(matrix, -1, -2)

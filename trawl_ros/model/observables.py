@@ -1,6 +1,6 @@
-"""Observation: the observables of a state of the gear.
+"""Observables of a state of the gear.
 
-Their loop is compiled for complex numbers, for a complex step, as that of the boards' law.
+Their loop is compiled for complex numbers, for the complex step, as the boards' law is.
 """
 
 import numpy as np
@@ -14,21 +14,21 @@ from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.state import State, Tow
 from trawl_ros.records.observables import OBSERVABLES, Observables
 
-COLLAPSED_NORMAL, LYING_SPAN = -0.35, 0.5
-"""Vertical parts of a board's outward normal, below which it has fallen on its face, and of its
-span, below which, inclined by 60°, it lies on its back or hangs upside down.
-"""
+COLLAPSED_NORMAL = -0.35
+"""Vertical part of a board's outward normal below which it has fallen on its face."""
 
-LYING = np.sin(np.radians(50.0))
-"""Vertical part of a board's outward normal, up or down, from which it lies over."""
+LEAST_SPAN_UPWARD = 0.5
+"""Vertical part of a board's span below which it lies down or hangs upside down."""
 
+LYING_NORMAL = np.sin(np.radians(50.0))
+"""Vertical part of a board's outward normal, up or down, above which it lies over."""
 
 TOP_ENDS = np.array([[0, 2], [1, 3]])
 """Ends of the highest bars of both warps among the blocks and the nodes below them."""
 
 
 def observe(model: GearModel, state: State, tow: Tow) -> Observables:
-    """Compute the observables of a state; complex states give complex values."""
+    """Return the observables of a state; complex states give complex values."""
     at = observed_nodes(model)
     parts = (
         state.nodes[at],
@@ -46,7 +46,7 @@ def observe(model: GearModel, state: State, tow: Tow) -> Observables:
 
 
 def observed_values(model: GearModel, states: State, tows: Tow) -> FloatArray:
-    """Observables (m, 22), complex, of m states whose nodes are the `observed_nodes` alone."""
+    """Return observables (m, 22), complex, of m states that have the `observed_nodes` only."""
     top, segments = model.layout.top_warp_bars, float(model.warp_segments)
     given = as_kind(
         complex,
@@ -64,8 +64,10 @@ def observed_values(model: GearModel, states: State, tows: Tow) -> FloatArray:
 
 
 def observed_nodes(model: GearModel) -> IntArray:
-    """Nodes (6,) that the observables depend on: both ends of the headrope, its centre, the
-    footrope's, and the highest of both warps.
+    """Return the nodes (6,) that the observables depend on.
+
+    They are both ends of the headrope, the centres of headrope and footrope, and the highest node
+    of either warp.
     """
     head, foot = model.layout.headrope, model.layout.footrope
     mouth = head[0], head[-1], head[len(head) // 2], foot[len(foot) // 2]
@@ -74,17 +76,18 @@ def observed_nodes(model: GearModel) -> IntArray:
 
 @inner
 def _length(vector: FloatArray) -> float:
-    """Length of a vector (3,), without conjugation."""
+    """Return the length of a vector (3,), without conjugation."""
     size: float = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
     return size
 
 
 @compiled
 def fill_attitude(rotation: FloatArray, angles: FloatArray) -> None:
-    """Fill in pitch (nose down positive), roll (top to starboard positive) and inclination δ of the
-    board's z axis against the vertical (eq. 38, unsigned), rad, of one board (3, 3).
+    """Fill in pitch, roll and inclination (rad) of one board with a rotation (3, 3).
 
-    Pitch and roll are those of R = Rz(yaw) Ry(pitch) Rx(roll) in the right-handed door frame.
+    Pitch is positive nose down, roll positive with the top to starboard. The inclination δ is that
+    of the board's z axis against the vertical (eq. 38), without sign. Pitch and roll are those of
+    R = Rz(yaw) Ry(pitch) Rx(roll) in the right-handed door frame.
     """
     level = np.sqrt(rotation[0, 0] ** 2 + rotation[1, 0] ** 2)
     flat = np.sqrt(rotation[0, 2] ** 2 + rotation[1, 2] ** 2)
@@ -117,9 +120,9 @@ def fill_observables(
     Parameters
     ----------
     nodes, node_velocities
-        Of the nodes `observed_nodes`, (m, 6, 3).
+        Positions and velocities of the `observed_nodes`, (m, 6, 3).
     boards, rotations, board_velocities, rates, blocks, block_velocities
-        As `State` and `Tow` have them, m in front.
+        Arrays of `State` and `Tow`, with m as the first axis.
     rest, rest_rate
         Unstretched lengths of the highest bar of either warp and their rates, (m, 2).
     ends, bars
@@ -150,7 +153,7 @@ def fill_observables(
                 v[2 + side, i] = node_velocities[case, 4 + side, i]
         pull[:] = 0.0
         add_bar_forces(ends, x, v, rest[case], rest_rate[case], bars, water, pull)
-        # Warps leave over the stern: their angles count from straight astern.
+        # Warps leave over the stern: their angles are measured from straight astern.
         across, ahead = x[0, 0] - x[1, 0], x[0, 1] - x[1, 1]
         wide = np.sqrt(across**2 + ahead**2)
         across, ahead = across / wide, ahead / wide
@@ -173,32 +176,34 @@ def fill_observables(
 
 
 def outward_normal_lift(state: State) -> FloatArray:
-    """Vertical part (2,) of the boards' outward unit normals; positive points up."""
+    """Return the vertical part (2,) of the boards' outward unit normals; positive is up."""
     lift: FloatArray = state.board_rotations[:, 2, 1] * OUTWARD
     return lift
 
 
 def fallen_boards(state: State) -> tuple[bool, bool]:
-    """True for each board, port first, that lies on its face or back or hangs upside down."""
+    """Return True for each board, port first, that lies on its face or back or upside down."""
     up = np.real(state.board_rotations[:, 2, 2])
-    port, starboard = (outward_normal_lift(state) < COLLAPSED_NORMAL) | (up < LYING_SPAN)
+    port, starboard = (outward_normal_lift(state) < COLLAPSED_NORMAL) | (up < LEAST_SPAN_UPWARD)
     return bool(port), bool(starboard)
 
 
 def lies_by_attitude(pitch: float, roll: float) -> bool:
-    """True if a board with such pitch and roll (rad) lies on its back or face, or hangs upside
-    down: inclined by 60° and more, for one on its face may hardly lean more than others stand.
+    """Return True if a board with this pitch and roll (rad) lies down or hangs upside down.
+
+    It does from an inclination of 60°. The inclination decides, not the roll: a board on its face
+    may lean hardly more than a board that stands.
     """
-    return bool(np.cos(pitch) * np.cos(roll) < LYING_SPAN)
+    return bool(np.cos(pitch) * np.cos(roll) < LEAST_SPAN_UPWARD)
 
 
 def lies_over(model: GearModel, state: State) -> bool:
-    """True if a board leans by 50° and more; the plates of a pair trawl may lie as they will."""
-    return not model.paired and bool(np.abs(outward_normal_lift(state)).max() > LYING)
+    """Return True if a board leans by 50° or more; the plates of a pair trawl may lie anyhow."""
+    return not model.paired and bool(np.abs(outward_normal_lift(state)).max() > LYING_NORMAL)
 
 
 def highest_point(model: GearModel, state: State) -> float:
-    """Height (m) of the highest node or board edge; above zero means out of the water."""
+    """Return the height (m) of the highest node or board edge; above zero it is in the air."""
     half = 0.5 * model.board.span
     tops = state.board_positions[:, 2] + half * np.abs(state.board_rotations[:, 2, 2])
     return float(max(state.nodes[:, 2].max(), tops.max()))

@@ -1,4 +1,4 @@
-"""The sparsity pattern of a gear's matrices, found once when its model is built."""
+"""Sparsity pattern of a gear's matrices, built once with its model."""
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -9,17 +9,27 @@ import scipy.sparse as sp
 from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.model.compiled import compiled, fused
 
-PATTERNS = 4
-"""So many patterns are kept: gears that differ in what their bars are made of have the same one."""
+CACHED_PATTERNS = 4
+"""Number of patterns kept; gears that differ only in the properties of bars share one."""
 
 
 @dataclass(frozen=True, eq=False)
 class SparsityPattern:
     """Sparsity pattern: slots of the blocks of bars, boards, nodes and kite in a (dof, dof) matrix.
 
-    ``plain``, ``hung`` and ``rigged`` are the numbers of the bars between two nodes, from a
-    towing block to a node, and from a fastening point to a node; ``rig_board`` and
-    ``rig_point`` say at which board and point (warp, upper, lower bridle) the latter start.
+    Attributes
+    ----------
+    dof
+        Number of degrees of freedom.
+    plain, hung, rigged
+        Numbers of the bars between two nodes, from a towing block to a node, and from a fastening
+        point to a node.
+    rig_board, rig_point
+        Board and fastening point (warp, upper, lower bridle) at which rigged bars start.
+    slot
+        Index in the data of each value of all blocks.
+    indices, indptr
+        Row indices and column pointers of the compressed sparse columns.
     """
 
     dof: int
@@ -33,29 +43,29 @@ class SparsityPattern:
     indptr: IntArray
 
     def matrix(self, data: FloatArray) -> sp.csc_matrix:
-        """Sparse matrix of ``data`` on this pattern."""
+        """Return the sparse matrix of ``data`` on this pattern."""
         return sp.csc_matrix((data, self.indices, self.indptr), shape=(self.dof, self.dof))
 
     def held(self, data: FloatArray, free: BoolArray) -> FloatArray:
-        """Data with the rows and columns of all but ``free`` (dof,) made the identity's."""
+        """Return data with rows and columns of the identity for all but ``free`` (dof,)."""
         columns = np.repeat(np.arange(self.dof), np.diff(self.indptr))
         kept = np.where(free[self.indices] & free[columns], data, 0.0)
         return np.where((self.indices == columns) & ~free[columns], 1.0, kept)
 
     @cached_property
     def order(self) -> IntArray:
-        """Numbers of all bars that have a block: the plain ones first, then hung and rigged."""
+        """Numbers of all bars that have a block: plain, hung, rigged."""
         return np.concatenate([self.plain, self.hung, self.rigged])
 
     @cached_property
     def node_slots(self) -> IntArray:
-        """Slots (n, 3, 3) of the nodes' own blocks, by row and column."""
+        """Slots (n, 3, 3) of the diagonal blocks of nodes, by row and column."""
         nodes = (self.dof - 12) // 3
         before = 36 * len(self.plain) + 9 * len(self.hung) + 81 * len(self.rigged) + 2 * 36
         return self.slot[before : before + 9 * nodes].reshape(nodes, 3, 3)
 
     def blocks(self, rows: IntArray, columns: IntArray) -> IntArray:
-        """Slots (..., 3, 3) of the blocks of nodes in these rows and columns."""
+        """Return slots (..., 3, 3) of the blocks of nodes in these rows and columns."""
         three = np.arange(3)
         down = 3 * rows[..., None, None] + three[:, None]
         across = 3 * columns[..., None, None] + three
@@ -64,14 +74,15 @@ class SparsityPattern:
         return np.searchsorted(column * self.dof + self.indices, wanted)
 
     def times(self, data: FloatArray, vector: FloatArray) -> FloatArray:
-        """Product of the matrix of ``data`` with a vector (dof,)."""
+        """Return the product of the matrix of ``data`` with a vector (dof,)."""
         product = np.zeros(self.dof, np.result_type(data, vector))
         _multiply(self.indices.view(np.uint32), self.indptr, data, vector, product)
         return product
 
     def add(self, blocks: list[FloatArray], data: FloatArray) -> None:
-        """Add the blocks of hung and rigged bars, boards, nodes and kite, in this order, to data
-        on the pattern that has those of plain bars.
+        """Add the blocks of hung and rigged bars, boards, nodes and kite, in this order.
+
+        The data on the pattern has the blocks of plain bars already.
         """
         first = 36 * len(self.plain)
         for block in blocks:
@@ -88,7 +99,7 @@ def _multiply(
     vector: FloatArray,
     product: FloatArray,
 ) -> None:
-    # Columns come in threes of like rows.
+    # The three columns of a node have the same rows.
     for column in range(0, len(vector), 3):
         first, second, third = indptr[column], indptr[column + 1], indptr[column + 2]
         a, b, c = vector[column], vector[column + 1], vector[column + 2]
@@ -105,14 +116,22 @@ def _add(values: FloatArray, slots: IntArray, data: FloatArray) -> None:
 
 
 def build_pattern(nodes: int, ends: IntArray, kite: IntArray) -> SparsityPattern:
-    """The pattern of a gear with ``nodes`` free nodes bars between the points ``ends``
-    and a kite held at the three nodes ``kite``; the same object for gears that are alike in these.
+    """Return the pattern of a gear; gears with equal arguments get the same object.
+
+    Parameters
+    ----------
+    nodes
+        Number of free nodes.
+    ends
+        Points (m, 2) between which the bars lie.
+    kite
+        The three nodes that carry the kite.
     """
     return _built(nodes, _Numbers(ends), _Numbers(kite))
 
 
 class _Numbers:
-    """Numbers that compare by what they are."""
+    """Array that compares and hashes by its values."""
 
     def __init__(self, values: IntArray) -> None:
         self.values = values
@@ -125,7 +144,7 @@ class _Numbers:
         return hash(self._key)
 
 
-@lru_cache(PATTERNS)
+@lru_cache(CACHED_PATTERNS)
 def _built(nodes: int, bars: _Numbers, held: _Numbers) -> SparsityPattern:
     ends, kite = bars.values, held.values
     i, j = ends.T

@@ -1,5 +1,4 @@
-"""One pass over the points of a gear: motion of the boards' fastening points, and loads and masses
-gathered on nodes and boards.
+"""One pass over the points of a gear: their motion, and loads and masses of nodes and boards.
 
 Points are numbered as in `trawl_ros.model.gear_model`: nodes, three fastening points of either
 board, two blocks.
@@ -25,8 +24,10 @@ def fill_points(
     v: FloatArray,
     arms: FloatArray,
 ) -> None:
-    """Fill in positions and velocities (p, 3) of all points, and the arms (2, 3, 3) of the
-    fastening points (2, 3, 3), which are given in the outward frame.
+    """Fill in positions and velocities (p, 3) of all points, and arms (2, 3, 3) of boards.
+
+    Arms lead from the boards' centres of gravity to their fastening points, in fixed axes; the
+    points ``fastening`` (2, 3, 3) are given in the outward frame.
     """
     count = len(nodes)
     for n in range(count):
@@ -60,8 +61,9 @@ def gather_loads(
     carriers: IntArray,
     force: FloatArray,
 ) -> None:
-    """Fill in the generalised forces (dof,) from the loads of all points (p, 3), the boards' own
-    loads (2, 6), and the kite's (3,), of which its carrying nodes have their shares.
+    """Fill in the generalised forces (dof,) from the loads of points, boards and kite.
+
+    Loads are (p, 3), (2, 6) and (3,); ``carriers`` are the nodes that share the load of the kite.
     """
     count = len(points) - 8
     for n in range(count):
@@ -91,8 +93,9 @@ def fill_masses(
     lumps: FloatArray,
     canvas: FloatArray,
 ) -> None:
-    """Fill in the masses of nodes (n, 3, 3), their own (kg) and the added one (kg per kg/m³), and
-    those of the kite's carrying nodes (9, 9).
+    """Fill in the masses of nodes (n, 3, 3) and of the kite's carrying nodes (9, 9).
+
+    ``own`` masses are in kg, ``added`` ones in kg per kg/m³ of water.
     """
     lumps[:], canvas[:] = 0.0, 0.0
     for n in range(len(lumps)):
@@ -117,9 +120,10 @@ def fill_board_masses(
     rigged: FloatArray,
     bodies: FloatArray,
 ) -> None:
-    """Fill in the boards' own mass and inertia (2, 6, 6) in fixed axes and, from one half
-    (r, 3, 3) of the mass of the bars rigged to them, its part in the board and the other end's
-    node (r, 9, 9).
+    """Fill in the masses of boards (2, 6, 6) and of the bars rigged to them (r, 9, 9).
+
+    Boards have their mass and inertia in fixed axes. ``half`` (r, 3, 3) is half of the mass of the
+    bars; it acts on the board and on the node at the bar's other end.
     """
     rigged[:], bodies[:] = 0.0, 0.0
     for bar in range(len(half)):

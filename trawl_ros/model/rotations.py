@@ -7,7 +7,7 @@ from trawl_ros.model.compiled import alike, compiled
 
 
 def rotation(vector: FloatArray) -> FloatArray:
-    """Rotation matrix of a rotation vector (Rodrigues), shape (..., 3) -> (..., 3, 3)."""
+    """Return the rotation matrix of a rotation vector (Rodrigues), (..., 3) -> (..., 3, 3)."""
     (flat,) = alike(vector.reshape(-1, 3))
     matrices = np.empty((len(flat), 3, 3), flat.dtype)
     _fill_rotations(flat, matrices)
@@ -20,16 +20,17 @@ def _fill_rotations(vectors: FloatArray, matrices: FloatArray) -> None:
         a, b, c = vectors[n, 0], vectors[n, 1], vectors[n, 2]
         square = a * a + b * b + c * c
         real = square.real
+        # sin θ / θ and (1 - cos θ) / θ²; their series where θ² is small.
         if real < 1e-8:
             sine = 1 - square / 6 + square**2 / 120
             versine = 0.5 - square / 24
         else:
             size = np.sqrt(real)
             at_sine, at_versine = np.sin(size) / size, (1 - np.cos(size)) / real
-            # The imaginary part is a complex step, so small that tangents are exact.
-            beside = 0.5 * (square - real) / real
-            sine = at_sine + (1 - real * at_versine - at_sine) * beside
-            versine = at_versine + (at_sine - 2 * at_versine) * beside
+            # The imaginary part is a complex step: its first-order term is exact to rounding.
+            imaginary = 0.5 * (square - real) / real
+            sine = at_sine + (1 - real * at_versine - at_sine) * imaginary
+            versine = at_versine + (at_sine - 2 * at_versine) * imaginary
         for i in range(3):
             for j in range(3):
                 matrices[n, i, j] = versine * vectors[n, i] * vectors[n, j]
@@ -43,15 +44,16 @@ def _fill_rotations(vectors: FloatArray, matrices: FloatArray) -> None:
 
 
 def about_axis(axis: int, radians: float) -> FloatArray:
-    """Rotation matrix about a coordinate axis (0, 1, 2)."""
+    """Return the rotation matrix about a coordinate axis (0, 1, 2)."""
     vector = np.zeros(3)
     vector[axis] = radians
     return rotation(vector)
 
 
 def rotation_vector(matrices: FloatArray) -> FloatArray:
-    """Rotation vectors of real rotation matrices, the inverse of `rotation` for turns of less
-    than π, shape (..., 3, 3) -> (..., 3).
+    """Return the rotation vectors of real rotation matrices, (..., 3, 3) -> (..., 3).
+
+    It is the inverse of `rotation` for angles of less than π.
     """
     (flat,) = alike(matrices.reshape(-1, 3, 3))
     vectors = np.empty((len(flat), 3))
@@ -63,7 +65,8 @@ def rotation_vector(matrices: FloatArray) -> FloatArray:
 def _fill_vectors(matrices: FloatArray, vectors: FloatArray) -> None:
     for n in range(len(matrices)):
         turn = matrices[n]
-        # Unit quaternion (x, y, z, w), from the largest of its parts (Shepperd 1978).
+        # Unit quaternion (x, y, z, w) from its largest component, without cancellation
+        # (Shepperd 1978).
         trace = turn[0, 0] + turn[1, 1] + turn[2, 2]
         best, most = 3, trace
         for i in range(3):

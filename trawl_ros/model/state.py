@@ -25,10 +25,9 @@ class Tow:
 
 @dataclass(frozen=True)
 class TowSlopes:
-    """Derivatives of a towing boundary by m parameters.
+    """Derivatives of a towing boundary by m parameters, per unit of each.
 
-    ``blocks`` and ``block_velocities`` (m, 2, 3), ``lengths`` and ``length_rates`` (m, 2), each per
-    unit of the parameter.
+    ``blocks`` and ``block_velocities`` are (m, 2, 3), ``lengths`` and ``length_rates`` (m, 2).
     """
 
     blocks: FloatArray
@@ -38,7 +37,7 @@ class TowSlopes:
 
 
 def held_boundary(number: int) -> TowSlopes:
-    """Boundary that does not depend on so many parameters."""
+    """Return the zero derivatives of a boundary that depends on none of ``number`` parameters."""
     return TowSlopes(*np.zeros((2, number, 2, 3)), *np.zeros((2, number, 2)))
 
 
@@ -59,7 +58,7 @@ class State:
     board_rates: FloatArray
 
     def moved(self, step: FloatArray) -> 'State':
-        """The state displaced by ``step`` (dof,): metres, and rotation vectors for boards."""
+        """Return the state displaced by ``step`` (dof,): metres, and rotation vectors of boards."""
         n = len(self.nodes)
         board = step[3 * n :].reshape(2, 6)
         return State(
@@ -72,7 +71,7 @@ class State:
         )
 
     def with_velocity(self, velocity: FloatArray) -> 'State':
-        """Copy of the state with generalised velocity ``velocity`` (dof,)."""
+        """Return the state with the generalised velocity ``velocity`` (dof,)."""
         n = len(self.nodes)
         board = velocity[3 * n :].reshape(2, 6)
         return State(
@@ -91,7 +90,7 @@ class State:
         return np.concatenate([self.node_velocities.ravel(), board.ravel()])
 
     def shifted(self, offset: FloatArray) -> 'State':
-        """The whole gear displaced by ``offset`` (3,), m."""
+        """Return the state of the whole gear displaced by ``offset`` (3,), m."""
         return State(
             nodes=self.nodes + offset,
             board_positions=self.board_positions + offset,
@@ -103,9 +102,9 @@ class State:
 
 
 def halfway(first: State, last: State, h: float) -> State:
-    """The state half of ``h`` seconds after ``first`` on the cubic through both ends.
+    """Return the state ``h`` / 2 seconds after ``first`` on the cubic Hermite through both ends.
 
-    Its error falls with the fourth power of ``h``, faster than the time stepper's own.
+    Its error falls with the fourth power of ``h``, faster than that of the time stepper.
     """
 
     def place(move: FloatArray, v0: FloatArray, v1: FloatArray) -> FloatArray:
@@ -133,7 +132,10 @@ def halfway(first: State, last: State, h: float) -> State:
 
 
 def mirrored(state: State, permutation: IntArray) -> State:
-    """The mirror image in the x-z plane; ``permutation`` says which node becomes which."""
+    """Return the mirror image in the x-z plane.
+
+    ``permutation`` (n,) has the number of the mirrored node of each node.
+    """
     flip = np.array([1.0, -1.0, 1.0])
     swap = [1, 0]
     return State(

@@ -1,4 +1,4 @@
-"""The sea: density and current as functions of depth."""
+"""Sea water: density and current as functions of depth."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -8,7 +8,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import GearRecord
 
-ATMOSPHERE = 101_325.0
+ATMOSPHERE_PA = 101_325.0
 """Pressure at the surface, Pa."""
 
 
@@ -21,14 +21,14 @@ class Water:
     density : float
         Density at the surface, kg/m³.
     density_gradient : float
-        Its growth with depth, kg/m⁴.
+        Increase of the density with depth, kg/m⁴.
     gravity : float
         m/s².
     depths : (n,) array
         Depths of the current profile, m, rising; empty for still water.
     currents : (n, 2) array
-        Current to the east and north at these depths, m/s. Between them it follows a
-        monotone cubic, outside it stays constant.
+        Current to the east and north at these depths, m/s. It is interpolated by monotone cubics,
+        and constant outside them.
     """
 
     density: float = 1025.0
@@ -39,10 +39,11 @@ class Water:
 
     @cached_property
     def profile(self) -> tuple[FloatArray, FloatArray]:
-        """The current for compiled loops: depths (k,) and, from each on down, the cubics
-        (k, 2, 4) of both currents in the depth below it, highest power first.
+        """Current for compiled loops: depths (k,), and cubics (k, 2, 4) of both currents.
+
+        Each cubic is a function of the depth below its own, highest power first.
         """
-        # Instruments ask for pressures and depths only, and have no use for a compiler.
+        # Imported here: instruments need pressures and depths only, and should not load numba.
         from trawl_ros.model.current import fill_cubics
 
         knots = np.zeros(1) if len(self.depths) == 0 else np.ascontiguousarray(self.depths, float)
@@ -58,31 +59,31 @@ class Water:
         Parameters
         ----------
         depths
-            Depths of the added current (n,), m, rising; it stays constant above and below.
+            Depths of the added current (n,), m, rising; it is constant above and below.
         currents
-            To the east and north there (n, 2), m/s; between them as `Water` has it.
+            Current to the east and north at these depths (n, 2), m/s.
         """
         together = np.union1d(self.depths, depths)
         more = np.column_stack([np.interp(together, depths, column) for column in currents.T])
         return replace(self, depths=together, currents=self.current(-together)[:, :2] + more)
 
     def density_at(self, z: FloatArray) -> FloatArray:
-        """Density at height ``z`` (m, up, negative below the surface), kg/m³."""
+        """Return the density at height ``z`` (m, up, negative below the surface), kg/m³."""
         return self.density - self.density_gradient * z
 
     def pressure(self, depth: float) -> float:
-        """Absolute pressure (Pa) at a depth (m)."""
+        """Return the absolute pressure (Pa) at a depth (m)."""
         column = self.density * depth + 0.5 * self.density_gradient * depth**2
-        return ATMOSPHERE + self.gravity * column
+        return ATMOSPHERE_PA + self.gravity * column
 
     def depth(self, pressure: float) -> float:
-        """Depth (m) at an absolute pressure (Pa), the inverse of `pressure`."""
-        column = (pressure - ATMOSPHERE) / self.gravity
+        """Return the depth (m) at an absolute pressure (Pa), the inverse of `pressure`."""
+        column = (pressure - ATMOSPHERE_PA) / self.gravity
         root = np.sqrt(self.density**2 + 2.0 * self.density_gradient * column)
         return float(2.0 * column / (self.density + root))
 
     def current(self, z: FloatArray) -> FloatArray:
-        """Velocity of the water at heights ``z``, shape (..., 3), m/s in ``map``."""
+        """Return the velocity of the water at heights ``z``, shape (..., 3), m/s in ``map``."""
         return self._currents_at(z)[0]
 
     @cached_property
@@ -91,11 +92,11 @@ class Water:
         return self.current(np.array(0.0))
 
     def current_slope(self, z: FloatArray) -> FloatArray:
-        """Derivative of the current by height, shape (..., 3), 1/s."""
+        """Return the derivative of the current by height, shape (..., 3), 1/s."""
         return self._currents_at(z)[1]
 
     def _currents_at(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        # As above, for the compiler.
+        # Imported here, as in `profile`.
         from trawl_ros.model.compiled import alike
         from trawl_ros.model.current import fill_currents
 
@@ -106,7 +107,7 @@ class Water:
 
 
 def build_water(gear: GearRecord) -> Water:
-    """The water of a gear file."""
+    """Return the water of a gear file."""
     levels = gear.water.current
     return Water(
         density=gear.water.density_kg_m3,

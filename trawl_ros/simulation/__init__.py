@@ -1,1 +1,1 @@
-"""The tow in time: ship, winches, sea and gear; truth comes out."""
+"""Simulation of a tow in time: ship, winches, sea and gear; its output is the truth."""

@@ -8,13 +8,14 @@ from trawl_ros.records.towing_limits import LIMITS
 
 @dataclass(frozen=True)
 class Command:
-    """Command to ship and winches: warp lengths (m), speed through the water (m/s),
-    rate of turn (rad/s, to port positive).
+    """Command to ship and winches.
+
+    Warp lengths are in m, speed through the water in m/s, rate of turn in rad/s, positive to port.
 
     Raises
     ------
     ScenarioError
-        If one of them is beyond the limits of a tow, or NaN.
+        If a value is NaN or beyond the limits of a tow.
 
     Examples
     --------

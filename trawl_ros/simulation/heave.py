@@ -8,22 +8,26 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 
 COMPONENTS = 100
-"""Sines of an irregular heave. Each carries the same energy at a frequency of its own, so they
-never come round to the same pattern again."""
+"""Number of sines of an irregular heave.
 
-HIGHEST = 2.0
-"""Highest frequency of an irregular heave over that of the spectrum's peak: waves that are
-shorter pass under a ship of usual length without lifting her."""
+They have equal energy and random frequencies, so that the heave does not repeat itself.
+"""
+
+HIGHEST_TO_PEAK_FREQUENCY = 2.0
+"""Highest frequency of an irregular heave over that of the spectrum's peak.
+
+Shorter waves do not lift a ship of usual length.
+"""
 
 
 @dataclass(frozen=True)
 class Heave:
     """Height of the towing blocks above their mean, as a function of time.
 
-    ``amplitudes`` (m), ``frequencies`` (rad/s) and ``phases`` (rad) of its sines, all of shape
-    (n,); none for a calm sea. It grows from nothing at ``begin`` to its full size ``growth``
-    seconds later, both in s since the start of the trial; the growth is smooth to the second
-    derivative, so that it does not jerk the warps.
+    Its sines have ``amplitudes`` (m), ``frequencies`` (rad/s) and ``phases`` (rad) of shape (n,); a
+    calm sea has none. It begins at ``begin`` (s since the start of the trial) and grows to its full
+    size in ``growth`` s. Growth is smooth to the second derivative, so that it does not jerk the
+    warps.
     """
 
     amplitudes: FloatArray = field(default_factory=lambda: np.empty(0))
@@ -38,7 +42,7 @@ class Heave:
         return 2 * math.pi / float(self.frequencies.max()) if len(self.frequencies) else math.inf
 
     def at(self, time: float) -> tuple[float, float]:
-        """Height (m) and vertical velocity (m/s) at a time (s since the start of the trial)."""
+        """Return height (m) and vertical velocity (m/s) at a time (s since the trial's start)."""
         x = (time - self.begin) / self.growth
         if x <= 0.0 or not len(self.frequencies):
             return 0.0, 0.0
@@ -62,25 +66,26 @@ def regular_heave(height: float, period: float, *, begin: float, growth: float) 
 def irregular_heave(
     height: float, period: float, draws: np.random.Generator, *, begin: float, growth: float
 ) -> Heave:
-    """Give a heave with the spectrum of Bretschneider (1959), as ITTC and ISSC use it.
+    """Return a heave with the spectrum of Bretschneider (1959), as used by ITTC and ISSC.
 
-    S(ω) = (5/16) H² ω_p⁴ ω⁻⁵ exp(−1.25 (ω_p/ω)⁴), of which the part below a frequency holds the
-    share exp(−1.25 (ω_p/ω)⁴) of the energy. It ends at `HIGHEST` ω_p and is scaled so that what
-    is left has the height asked for.
+    S(ω) = (5/16) H² ω_p⁴ ω⁻⁵ exp(−1.25 (ω_p/ω)⁴); the part of the energy below ω is
+    exp(−1.25 (ω_p/ω)⁴). The spectrum ends at `HIGHEST_TO_PEAK_FREQUENCY` ω_p; the remainder is
+    scaled to the given height.
 
     Parameters
     ----------
     height
         Significant height of the heave (m): four standard deviations.
     period
-        At the spectrum's peak, as it is felt on board (s).
+        Period at the spectrum's peak as encountered by the ship, s.
     draws
         Generator of frequencies and phases.
     begin, growth
-        As in `Heave`.
+        Times as in `Heave`.
     """
+    # One random frequency in each of equal parts of the cumulative energy.
     below = (np.arange(COMPONENTS) + draws.random(COMPONENTS)) / COMPONENTS
-    below *= math.exp(-1.25 / HIGHEST**4)
+    below *= math.exp(-1.25 / HIGHEST_TO_PEAK_FREQUENCY**4)
     return Heave(
         amplitudes=np.full(COMPONENTS, 0.25 * height * math.sqrt(2 / COMPONENTS)),
         frequencies=2 * math.pi / period * (1.25 / -np.log(below)) ** 0.25,

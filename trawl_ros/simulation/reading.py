@@ -1,4 +1,4 @@
-"""Ground truth of a state: the seam between the model and everything that observes it."""
+"""Ground truth of a state: the interface between the model and everything that observes it."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -18,8 +18,8 @@ from trawl_ros.records.truth import (
     Truth,
     VesselTruth,
     WinchTruth,
+    single,
 )
-from trawl_ros.simulation.section import section_of, sonar_axes
 from trawl_ros.simulation.ship import Ship, Winch
 
 
@@ -59,7 +59,7 @@ def _doors(model: GearModel, state: State) -> tuple[DoorTruth, DoorTruth]:
 def read_truth(
     model: GearModel, stamp: int, ship: Ship, winches: tuple[Winch, Winch], state: State, tow: Tow
 ) -> Truth:
-    """Read the truth of a state for the instruments."""
+    """Return the truth of a state for the instruments."""
     observables = observe(model, state, tow)
     head, foot = model.layout.headrope, model.layout.footrope
     sonar = sonar_axes(model, state)
@@ -92,9 +92,62 @@ def read_truth(
     )
 
 
+def sonar_axes(model: GearModel, state: State) -> FloatArray:
+    """Return the axes of frame ``sonar`` as columns (3, 3).
+
+    Axis z is forward along the mouth's normal, x down in the mouth, y to port.
+    """
+    layout = model.layout
+    head, foot = layout.headrope, layout.footrope
+    port = state.nodes[head[0]] - state.nodes[head[-1]]
+    down = state.nodes[foot[len(foot) // 2]] - state.nodes[head[len(head) // 2]]
+    down = down - (down @ port) / (port @ port) * port
+    x, y = down / np.linalg.norm(down), port / np.linalg.norm(port)
+    return np.column_stack([x, y, np.cross(x, y)])
+
+
+def section_of(model: GearModel, state: State, axes: FloatArray) -> FloatArray:
+    """Return the intersections of ropes and twine with the plane z = 0 of frame ``sonar``.
+
+    A numerical bar that stands for several real ones has one intersection with the diameter of one
+    real bar. The node that carries the sonar is left out.
+
+    Parameters
+    ----------
+    model, state
+        Gear and its state.
+    axes
+        Axes from `sonar_axes`.
+
+    Returns
+    -------
+    array
+        Section of `NetTruth`, shape (k, 3).
+    """
+    head, foot = model.layout.headrope, model.layout.footrope
+    sonar, middle = head[len(head) // 2], foot[len(foot) // 2]
+    positions = (state.nodes - state.nodes[sonar]) @ axes
+    # Both lie in the plane by definition; rounding must not decide which bars cross there.
+    positions[[sonar, middle], 2] = 0.0
+    # Bars at boards and blocks are far ahead of the mouth; their point numbers exceed the nodes.
+    inner = np.flatnonzero((model.ends < model.nodes).all(axis=1) & (model.bars.normal_area > 0))
+    start, end = model.ends[inner].T
+    behind = positions[:, 2] < 0.0
+    through = (behind[start] != behind[end]) & (start != sonar) & (end != sonar)
+    bars, a, b = inner[through], positions[start[through]], positions[end[through]]
+    share = a[:, 2] / (a[:, 2] - b[:, 2])
+    places = (a + share[:, None] * (b - a))[:, :2]
+    # n bars of diameter d have the volume n π d² / 4 and the area n d per metre.
+    diameters = 4 / np.pi * model.bars.volume[bars] / model.bars.normal_area[bars]
+    # The footrope touches the plane with its middle, but may not pass through it.
+    lowest = [*positions[middle, :2], model.gear.footrope.diameter_m]
+    return single(np.vstack([np.column_stack([places, diameters]), lowest]))
+
+
 def _resampled(points: FloatArray, number: int) -> FloatArray:
-    """As many points along a rope, its ends and middle among them; a planned net's footrope may
-    have other nodes than its headrope.
+    """Return ``number`` points along a rope, with its ends and middle.
+
+    The footrope of a planned net may have another number of nodes than its headrope.
     """
     if len(points) == number:
         return points
@@ -104,7 +157,7 @@ def _resampled(points: FloatArray, number: int) -> FloatArray:
 
 
 def _means(values: FloatArray, groups: list[IntArray]) -> list[float]:
-    """Means of ``values`` over index groups, vectorised as there are a thousand of them."""
+    """Return the means of ``values`` over index groups, vectorised for thousands of groups."""
     sizes = np.array([len(group) for group in groups])
     starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
     sums = np.add.reduceat(values[np.concatenate(groups)], starts)
@@ -112,7 +165,7 @@ def _means(values: FloatArray, groups: list[IntArray]) -> list[float]:
 
 
 def read_picture(model: GearModel, stamp: int, state: State, tow: Tow) -> GearPicture:
-    """Picture of the gear for drawing: every rope and bar with its tension."""
+    """Return a picture of the gear for drawing: every rope and bar with its tension."""
     points = points_of(model, state, tow).positions
     tensions = _means(bar_tensions(model, state, tow), [bars for *_, bars in model.layout.lines])
     return GearPicture(

@@ -1,4 +1,4 @@
-"""The sea around ship and gear: heave, seabed and schools of fish."""
+"""Sea around ship and gear: heave, seabed and schools of fish."""
 
 from dataclasses import dataclass, field
 
@@ -14,8 +14,8 @@ from trawl_ros.simulation.seabed import Seabed
 class School:
     """School of fish in uniform motion.
 
-    ``position`` (3,) of its middle at the start of the trial (m, ``map``), ``velocity`` (3,) over
-    ground (m/s); ``size`` and ``density`` as in `SchoolTruth`.
+    ``position`` (3,) is that of its centre at the start of the trial (m, ``map``), ``velocity``
+    (3,) is over ground (m/s); ``size`` and ``density`` are those of `SchoolTruth`.
     """
 
     position: FloatArray
@@ -24,7 +24,7 @@ class School:
     velocity: FloatArray
 
     def at(self, time: float) -> SchoolTruth:
-        """Truth of the school at a time (s since the start of the trial)."""
+        """Return the truth of the school at a time (s since the start of the trial)."""
         position = self.position + self.velocity * time
         return SchoolTruth(single(position), single(self.size), float(np.float32(self.density)))
 
@@ -33,7 +33,7 @@ class School:
 class Sea:
     """Heave, seabed and schools; by default calm, bottomless and empty.
 
-    Density and current are the gear's business: `trawl_ros.model.water.Water`.
+    Density and current are those of the gear's `trawl_ros.model.water.Water`.
     """
 
     heave: Heave = field(default_factory=Heave)
@@ -41,10 +41,10 @@ class Sea:
     schools: tuple[School, ...] = ()
 
     def schools_at(self, time: float) -> tuple[SchoolTruth, ...]:
-        """All schools at a time (s since the start of the trial)."""
+        """Return all schools at a time (s since the start of the trial)."""
         return tuple(school.at(time) for school in self.schools)
 
     def seabed_under(self, ship: FloatArray, headrope: FloatArray) -> SeabedTruth:
-        """Depths of the seabed under two positions (3,) in ``map``."""
+        """Return the depths of the seabed under two positions (3,) in ``map``."""
         under_ship, under_headrope = self.seabed.depth_at(np.stack([ship, headrope]))
         return SeabedTruth(float(under_ship), float(under_headrope))

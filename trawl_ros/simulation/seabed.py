@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 
 
 class SeabedTouched(ScenarioError):
-    """Contact of the gear with the seabed, for which the model has no forces."""
+    """Contact of the gear with the seabed, which the model does not have."""
 
 
 @dataclass(frozen=True)
 class Seabed:
-    """Depths (m) below the mean surface along one direction of ``map``; across it all is level.
+    """Depths (m) below the mean surface along one direction of ``map``, level across it.
 
-    ``distances`` (n,) from the origin along ``direction`` (ENU yaw, rad), rising, with the
-    ``depths`` (n,) there; straight in between, level beyond. By default there is no bottom.
+    ``depths`` (n,) are those at rising ``distances`` (n,) from the origin along ``direction`` (ENU
+    yaw, rad). They are interpolated linearly and constant beyond. By default there is no bottom.
     """
 
     direction: float = 0.0
@@ -32,28 +32,28 @@ class Seabed:
     depths: FloatArray = field(default_factory=lambda: np.full(1, math.inf))
 
     def depth_at(self, places: FloatArray) -> FloatArray:
-        """Depths (...,) at places (..., 3) in ``map``."""
+        """Return the depths (...,) at places (..., 3) in ``map``."""
         along = np.array([math.cos(self.direction), math.sin(self.direction)])
         depths: FloatArray = np.interp(places[..., :2] @ along, self.distances, self.depths)
         return depths
 
 
 def require_clear(seabed: Seabed, model: 'GearModel', state: 'State') -> None:
-    """Check that no node and no door of the gear has reached the bottom.
+    """Check that no node and no door of the gear touches the seabed.
 
     Raises
     ------
     SeabedTouched
-        Naming the part that lies deepest in it, and the depths.
+        If one does; it names the part that lies deepest in the seabed.
     """
     if not math.isfinite(seabed.depths.min()):
         return
     places = np.concatenate([state.board_positions, state.nodes])
     heights = places[:, 2] + seabed.depth_at(places)
-    # Down to a door's lowest corner.
+    # A door reaches down to its lowest corner.
     edges = np.array([model.board.chord, 0.0, model.board.span])
     heights[:2] -= 0.5 * np.abs(state.board_rotations[:, 2]) @ edges
-    # Of sides that are alike, rounding must not say which is named.
+    # Rounded, so that of two equal sides port is named.
     lowest = int(np.argmin(np.round(heights, 6)))
     if heights[lowest] > 0.0:
         return
@@ -67,6 +67,6 @@ def require_clear(seabed: Seabed, model: 'GearModel', state: 'State') -> None:
         )
     raise SeabedTouched(
         f'the {part} touches the seabed, which is {seabed.depth_at(places[lowest]):.1f} m deep '
-        'there; the model has no contact with the bottom, so expected shorter warps, more speed '
+        'there, but the model has no contact with the bottom; expected shorter warps, more speed '
         'or deeper water'
     )

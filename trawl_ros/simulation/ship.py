@@ -15,8 +15,11 @@ def _approach(value: float, target: float, most: float) -> float:
 
 @dataclass(frozen=True)
 class Ship:
-    """Position (m) midway between the blocks, heading (ENU yaw, rad), speed through the
-    water (m/s), rate of turn (rad/s, to port positive), and how fast she heaves (m/s, up).
+    """State of the ship.
+
+    ``position`` is midway between the blocks (m), ``heading`` the ENU yaw (rad), ``speed`` that
+    through the water (m/s), ``yaw_rate`` positive to port (rad/s), ``heave_rate`` positive up
+    (m/s).
     """
 
     position: FloatArray
@@ -37,16 +40,16 @@ class Ship:
         return velocity
 
     def heaved(self, height: float, rate: float) -> 'Ship':
-        """Copy of the ship at a ``height`` (m) above the mean surface, rising at ``rate`` (m/s)."""
+        """Return the ship at a ``height`` (m) above the mean surface, rising at ``rate`` (m/s)."""
         position = np.array([self.position[0], self.position[1], height])
         return replace(self, position=position, heave_rate=rate)
 
     def advanced(
         self, limits: ShipRecord, speed: float, yaw_rate: float, current: FloatArray, dt: float
     ) -> 'Ship':
-        """Ship after ``dt`` seconds of approaching a wanted speed and rate of turn in a current.
+        """Return the ship after ``dt`` s with a commanded speed and rate of turn in a current.
 
-        Her height stays as it was: that is for `heaved`.
+        Her height does not change; `heaved` sets it.
         """
         new_speed = _approach(self.speed, speed, limits.max_acceleration_m_s2 * dt)
         most = math.radians(limits.max_turn_acceleration_deg_s2) * dt
@@ -66,18 +69,18 @@ class Ship:
 
 @dataclass(frozen=True)
 class Winch:
-    """Winch: warp length out (m) and pay-out speed (m/s)."""
+    """Winch: warp length paid out (m) and pay-out speed (m/s)."""
 
     length: float
     speed: float
 
     def advanced(self, limits: WinchRecord, length: float, dt: float) -> 'Winch':
-        """Winch after ``dt`` seconds of paying out or hauling towards a wanted length."""
+        """Return the winch after ``dt`` s of paying out or hauling towards a commanded length."""
         left = length - self.length
         most = limits.max_acceleration_m_s2
         if abs(left) <= most * dt**2 and abs(self.speed) <= most * dt:
             return Winch(length, 0.0)
-        # The speed from which the drum, after this step, still stops in time.
+        # Greatest speed from which the drum still stops in time after this step.
         side = math.copysign(1.0, left) if left else 0.0
         way = 2 * abs(left) - side * self.speed * dt
         root = math.sqrt((0.5 * most * dt) ** 2 + most * max(way, 0.0))

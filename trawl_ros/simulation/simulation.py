@@ -22,8 +22,8 @@ from trawl_ros.solver.stepper import HALVINGS, Motion, StepFailed, Stepper, at_r
 
 NANOSECONDS = 1_000_000_000
 CALM = Sea()
-COUNTER_STEPS = 4
-"""Steps to what counters show: errors of 5 % are below a millimetre then."""
+COUNTER_ITERATIONS = 4
+"""Fixed-point iterations for the counters; errors of 5 % are below a millimetre after these."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Instant:
 
 
 def tow_of(model: GearModel, ship: Ship, winches: tuple[Winch, Winch]) -> Tow:
-    """Towing boundary that ship and winches impose on the gear at one instant."""
+    """Return the towing boundary that ship and winches impose on the gear at one instant."""
     offsets = block_offsets(model, ship.heading)
     velocity = ship.velocity + model.water.surface_current
     spin = np.array([0.0, 0.0, ship.yaw_rate])
@@ -55,7 +55,7 @@ class Simulation:
     Parameters
     ----------
     model
-        From `build_model`.
+        Model from `build_model`.
     command
         Operating point of the start.
     heading
@@ -63,19 +63,19 @@ class Simulation:
     stamp
         Time of the start, ns.
     period
-        Time between two instants, s. The solver takes steps of twice the period; the instant
-        between lies on the cubic through both ends.
+        Time between two instants, s. The solver takes steps of twice the period; the instant in
+        between is interpolated by the cubic through both ends.
     sea
         Heave, seabed and schools of fish.
     effect_set
-        Effects beyond the model. Winches and ship are commanded by what counters and log show.
+        Effects beyond the model. Commands to winches and ship are in terms of counters and log.
 
     Raises
     ------
     NoSteadyState
-        If the gear has none to start from.
+        If there is no steady state at the first command.
     ScenarioError
-        If it is to start in a turn, or on the seabed (`SeabedTouched`).
+        If the tow would start in a turn, or on the seabed (`SeabedTouched`).
 
     Examples
     --------
@@ -104,8 +104,8 @@ class Simulation:
     ) -> None:
         if command.turn_rate:
             raise ScenarioError(
-                'a tow starts on a straight course, found a rate of turn of '
-                f'{command.turn_rate} rad/s'
+                f'command: found a rate of turn of {command.turn_rate} rad/s at the start of the '
+                'tow, expected 0: a tow starts on a straight course'
             )
         self._plain, self._effect_set = model, effect_set
         self.sea = sea
@@ -131,21 +131,21 @@ class Simulation:
         )
 
     def reset(self) -> None:
-        """Return to the start; the same tow is repeated to the last digit."""
+        """Return to the start; the same commands then give bitwise the same tow."""
         self.command, self.now = self._start
         self.model = self._gear_at(self.now.stamp, self.command, self.now.ship.heading)
         self._stepper = Stepper(self.model)
         self._reached = None
 
     def advance(self) -> Instant:
-        """Advance by one period. A command takes effect with the next step of the solver.
+        """Advance by one period; a command takes effect with the next step of the solver.
 
         Raises
         ------
         StepFailed
             If the motion cannot be computed even with short steps.
         SeabedTouched
-            If the gear comes to the bottom; it stays where it was.
+            If the gear touches the seabed; the state does not change then.
         """
         if self._reached is None:
             start = self.now
@@ -160,8 +160,8 @@ class Simulation:
     def _between(self, start: Instant, end: Instant) -> Instant:
         span = self._period / NANOSECONDS
         ship, winches = self._boundary(start, span)
-        # The blocks lie on a cubic like that of the gear: between a block and a wire that take
-        # ways of their own, a millimetre is a kilonewton.
+        # The blocks must lie on the same cubic as the gear: an error of a millimetre between block
+        # and wire is a kilonewton of tension.
         z0, z1 = start.ship.position[2], end.ship.position[2]
         v0, v1 = start.ship.heave_rate, end.ship.heave_rate
         return Instant(
@@ -175,7 +175,7 @@ class Simulation:
         )
 
     def _boundary(self, now: Instant, dt: float) -> tuple[Ship, tuple[Winch, Winch]]:
-        """Ship and winches after ``dt`` seconds under the present command."""
+        """Return ship and winches after ``dt`` s under the present command."""
         gear, wanted = self.model.gear, self._towed(self.command)
         surface = self.model.water.surface_current
         ship = now.ship.advanced(gear.ship, wanted.speed, wanted.turn_rate, surface, dt)
@@ -208,18 +208,18 @@ class Simulation:
             [w.length + w.speed * abs(w.speed) / (2.0 * most) for w in self.now.winches]
         )
         shown = stops
-        for _ in range(COUNTER_STEPS):
+        for _ in range(COUNTER_ITERATIONS):
             port, starboard = map(float, shown)
             towed = self._towed(replace(self.command, port_length=port, starboard_length=starboard))
             shown = shown + stops - (towed.port_length, towed.starboard_length)
-        # A winch that stands is not to creep.
+        # A stopped winch must not creep.
         stands = [winch.speed == 0.0 for winch in self.now.winches]
         commanded = (self.command.port_length, self.command.starboard_length)
         port, starboard = np.where(stands, commanded, shown)
         return float(port), float(starboard)
 
     def _towed(self, command: Command) -> Command:
-        """True command where counters and log show the given one."""
+        """Return the true command for which counters and log show the given one."""
         if not self._effect_set:
             return command
         shown = (command.port_length, command.starboard_length, command.speed)
@@ -229,17 +229,17 @@ class Simulation:
         return replace(command, port_length=port, starboard_length=starboard, speed=speed)
 
     def _gear_at(self, stamp: int, command: Command, heading: float) -> GearModel:
-        """Gear model with the effects in the situation at ``stamp``."""
+        """Return the gear model with the effects in the situation at ``stamp``."""
         shown = (command.port_length, command.starboard_length, command.speed)
         hours = self._seconds(stamp) / 3600.0
         return self._effect_set.gear(self._plain, Situation(shown, heading, sense(heading), hours))
 
     def _seconds(self, stamp: int) -> float:
-        """Time since the start, s."""
+        """Return the time since the start, s."""
         return (stamp - self._first_stamp) / NANOSECONDS
 
     def truth(self) -> Truth:
-        """Truth at the present instant, for the instruments."""
+        """Return the truth at the present instant, for the instruments."""
         now = self.now
         truth = read_truth(
             self.model,
@@ -256,7 +256,7 @@ class Simulation:
         )
 
     def picture(self) -> GearPicture:
-        """Picture of the present instant, for drawing."""
+        """Return a picture of the present instant, for drawing."""
         now = self.now
         picture = read_picture(
             self.model, now.stamp, now.motion.state, tow_of(self.model, now.ship, now.winches)

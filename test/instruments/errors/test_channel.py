@@ -7,7 +7,7 @@ import pytest
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.channel import ErrorChannel, ErrorModel
-from trawl_ros.instruments.errors.noise import NoiseModel
+from trawl_ros.instruments.errors.random_processes import NoiseModel
 
 N = 20_000
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.errors.bursts import BurstModel
 from trawl_ros.instruments.errors.channel import ErrorChannel, ErrorModel
-from trawl_ros.instruments.errors.noise import NoiseModel
+from trawl_ros.instruments.errors.random_processes import BurstModel, NoiseModel
 
 HOUR = 3600
 

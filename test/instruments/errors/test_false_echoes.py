@@ -5,7 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from trawl_ros.instruments.errors.channel import ErrorChannel, ErrorModel
-from trawl_ros.instruments.errors.false_echoes import FalseEchoes, FalseEchoModel
+from trawl_ros.instruments.errors.random_processes import FalseEchoes, FalseEchoModel
 from trawl_ros.instruments.parameters import RangeParameters
 
 RANGE = {'rate_hz': 1.0, 'min_range_m': 1.0, 'max_range_m': 400.0}

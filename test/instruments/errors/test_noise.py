@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from trawl_ros.instruments.errors.noise import Noise, NoiseModel
+from trawl_ros.instruments.errors.random_processes import Noise, NoiseModel
 
 
 def drawn(model, value=0.0, n=40_000, seed=3):

@@ -5,14 +5,14 @@ from itertools import pairwise
 import pytest
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.errors.sampling import Sampler
+from trawl_ros.instruments.errors.instrument import Sampler
 
 
 def sampled(rate: float, stamps: list[int]) -> list[int]:
     sampler = Sampler(rate)
     taken = []
     for stamp in stamps:
-        sampler.started_anew(stamp)
+        sampler.restarted(stamp)
         if sampler.due(stamp):
             taken.append(stamp)
     return taken

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.errors.bursts import BurstModel, Bursts
 from trawl_ros.instruments.errors.channel import ErrorModel
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
-from trawl_ros.instruments.errors.noise import NoiseModel
+from trawl_ros.instruments.errors.random_processes import BurstModel, Bursts, NoiseModel
 from trawl_ros.instruments.errors.timing import Timing
 from trawl_ros.records.samples import HeadingSample
 

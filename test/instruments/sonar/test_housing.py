@@ -58,27 +58,19 @@ def test_a_set_speed_of_sound_stretches_the_sounding_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ('key', 'value', 'sentence'),
+    ('key', 'value', 'named'),
     [
-        (
-            'max_range_m',
-            200.0,
-            'rate_hz: found 0.0625, expected 0.0474 at most: 76 pings of 0.278 s',
-        ),
-        (
-            'min_range_m',
-            155.0,
-            'max_range_m: found 150, expected more than min_range_m, which is 155',
-        ),
-        ('white_db', -70.0, 'white_db: found -70, expected more than black_db, which is -60'),
-        ('freeze_s', 3.0, 'freezes_per_hour: found 0 with freeze_s 3, expected both or neither'),
+        ('max_range_m', 200.0, 'rate_hz: found 0.0625'),
+        ('min_range_m', 155.0, 'max_range_m: found 150'),
+        ('white_db', -70.0, 'white_db: found -70'),
+        ('freeze_s', 3.0, 'freezes_per_hour: found 0 with freeze_s 3'),
     ],
 )
 def test_a_sonar_that_cannot_be_is_refused(
-    tmp_path: Path, key: str, value: float, sentence: str
+    tmp_path: Path, key: str, value: float, named: str
 ) -> None:
     path = tmp_path / 'mine.yaml'
     path.write_text(f'base: default\nsonar: {{sweep: {{{key}: {value}}}}}\n')
     with pytest.raises(InstrumentError) as caught:
         load_instruments(path)
-    assert sentence in str(caught.value)
+    assert named in str(caught.value)

@@ -8,8 +8,13 @@ import pytest
 
 from trawl_ros.instruments.sonar.detection import clear_echoes, first_echoes
 from trawl_ros.instruments.sonar.image import Grid
-from trawl_ros.instruments.sonar.reading import Openings, read_openings
-from trawl_ros.instruments.sonar.seam import follow
+from trawl_ros.instruments.sonar.reading import (
+    LineSearch,
+    Openings,
+    ReadingOptions,
+    follow,
+    read_openings,
+)
 
 GRID = Grid(80, 450, math.radians(-100.0), math.radians(200.0 / 79), 1.0, 90.0, 40.0)
 SIDE = 30.0
@@ -51,7 +56,9 @@ def image(seed: int = 0, *, scale: float = 1.0) -> np.ndarray:
 
 
 def test_nothing_goes_in_but_the_image_and_what_it_means() -> None:
-    assert list(inspect.signature(read_openings).parameters) == ['image', 'grid']
+    given = inspect.signature(read_openings).parameters
+    assert list(given) == ['image', 'grid', 'options']
+    assert given['options'].default == ReadingOptions()
 
 
 def test_a_net_is_read_as_it_was_painted() -> None:
@@ -170,4 +177,4 @@ def test_the_line_through_an_image_goes_on_where_brighter_spots_lie_apart() -> N
     level[np.arange(30), line] = 15.0
     level[3, 20] = level[12, 190] = level[25, 40] = 60.0
     level[14:16] = 0.0
-    np.testing.assert_allclose(follow(level), line, atol=4)
+    np.testing.assert_allclose(follow(level, LineSearch()), line, atol=4)

@@ -8,7 +8,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.mimics.change import Change
 from trawl_ros.effects.base.effect import Parameter, Readings, Situation
-from trawl_ros.effects.empirical.sensors import usual_error
+from trawl_ros.effects.empirical import usual_error
 from trawl_ros.records.channels import CHANNELS, MEASURED
 
 FURTHEST = 20.0

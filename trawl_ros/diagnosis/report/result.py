@@ -11,7 +11,7 @@ from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.repair import SourceBag
 from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.diagnosis.weighing import Weighed
-from trawl_ros.effects.catalogue.instruments.frozen_sensor import EFFECT as FROZEN
+from trawl_ros.effects.catalogue.instruments import FROZEN_SENSOR as FROZEN
 from trawl_ros.records.channels import CHANNELS
 
 

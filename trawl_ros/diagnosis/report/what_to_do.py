@@ -2,7 +2,7 @@
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.effects.base.effect import Effect
-from trawl_ros.effects.catalogue.instruments.frozen_sensor import EFFECT as FROZEN
+from trawl_ros.effects.catalogue.instruments import FROZEN_SENSOR as FROZEN
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.gear.parts import own_parts
 

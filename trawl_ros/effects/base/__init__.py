@@ -1,1 +1,1 @@
-"""Bases of effects and empirical terms."""
+"""Base class of effects."""

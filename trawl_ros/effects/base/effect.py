@@ -1,9 +1,9 @@
 """Base class of effects: physics beyond the model, or an error of an instrument.
 
-Each effect is a small file of this folder. It acts in one or more of three places: on what the
-gear is towed with (`Effect.apply_to_inputs`), on the gear and its water (`Effect.gear`), and on
-what sensors show of it (`Effect.apply_to_sensors`). All three are pure functions of the effect's
-values, so that one implementation serves prediction, sensitivities and simulation.
+An effect acts in one or more of three places: on the inputs, warp lengths and speed
+(`Effect.apply_to_inputs`), on the gear and its water (`Effect.gear`), and on the readings of
+sensors (`Effect.apply_to_sensors`). All three are pure functions of the effect's values, so that
+one implementation serves prediction, sensitivities and simulation.
 """
 
 import math
@@ -22,17 +22,17 @@ Readings = dict[str, float]
 """Readings by the name of the observable, SI."""
 
 WIDE = 5.0
-"""So many times further than is common an effect is taken to go where it is estimated."""
+"""Bound of an effect where it is estimated, as a multiple of its common size."""
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """Parameter of an effect: a value that says how strong it is.
+    """Parameter of an effect: a number that says how strong it is.
 
     Attributes
     ----------
     name, unit
-        Of the number; ``unit`` is empty where it has none.
+        Name and unit of the number; ``unit`` is empty if it has none.
     neutral
         Value at which the effect vanishes.
     low, high
@@ -40,7 +40,7 @@ class Parameter:
     std
         Prior standard deviation about the neutral value, assumed; scales the estimate.
     whole
-        True for a share of what is there as a whole, 1, or not at all, 0.
+        True for an all-or-nothing share: it is really 0 or 1.
 
     Examples
     --------
@@ -60,18 +60,18 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Situation:
-    """Covariates that an effect may depend on beside its values.
+    """Covariates of an effect, in addition to its values.
 
     Attributes
     ----------
     inputs
-        Port and starboard warp length (m) and speed (m/s), as the instruments have them.
+        Port and starboard warp length (m) and speed (m/s), as the instruments show them.
     heading
-        ENU yaw, rad, in the axes of the model.
+        ENU yaw of the ship in the axes of the model, rad.
     sense
-        1, or -1 where she tows the track the other way, so that a current comes from the other end.
+        1, or -1 if she tows the track the other way, so that a current comes from the other end.
     hours
-        Since the tow began.
+        Hours since the tow began.
     """
 
     inputs: tuple[float, float, float]
@@ -98,8 +98,10 @@ class Situation:
 
 @dataclass(frozen=True)
 class Effect:
-    """Base of all effects; one that is in the catalogue overrides at least one of its methods,
-    unless it has no parameters: then it is told from readings, without the model.
+    """Base of all effects.
+
+    An effect with parameters overrides at least one of the three methods. An effect without
+    parameters is found from the readings alone, without the model.
 
     Attributes
     ----------
@@ -110,16 +112,16 @@ class Effect:
     excited_by
         Inputs that must vary in a trial to make it observable.
     confused_with
-        Effects that look much alike in common trials.
+        Effects with similar consequences in common trials.
     dynamic
         True for an effect that shows only in transients, never in steady tows.
     direct
-        Direct check without any tow, in one sentence; empty where there is none.
+        Direct check without any tow, in one sentence; empty if there is none.
     instrument
-        Instrument whose error it is, where that may have others too; empty for physics.
+        Instrument whose error it is, if that may have other errors too; empty for physics.
     causes
-        Causes on deck, in the gear or in an instrument that look like this, in one sentence; empty
-        where ``sentence`` says it.
+        Causes on deck, in the gear or in an instrument, in one sentence; empty if ``sentence``
+        says it.
 
     Examples
     --------
@@ -149,7 +151,7 @@ class Effect:
 
     @property
     def fitted(self) -> bool:
-        """True for one with values that steady tows may show."""
+        """True for an effect with values that steady tows may show."""
         return bool(self.parameters) and not self.dynamic
 
     @property
@@ -158,42 +160,42 @@ class Effect:
         return np.array([parameter.neutral for parameter in self.parameters])
 
     def starts(self, depths: FloatArray) -> tuple[FloatArray, ...]:
-        """Start values (m,) for a search, where more than neutral ones are of use.
+        """Return start values (m,) for a search; the neutral values are enough for most effects.
 
         Parameters
         ----------
         depths
-            Of the lower edge of the net's mouth (n,), m, in the tows at hand.
+            Depths of the lower edge of the net's mouth (n,) in the tows at hand, m.
         """
         return (self.neutral,)
 
     def is_possible(self, lowest: FloatArray, seabed: FloatArray) -> bool:
-        """True unless what is known of the place rules it out.
+        """Return False if the depths of net and water rule the effect out.
 
         Parameters
         ----------
         lowest, seabed
             Depths (n,), m, of the lower edge of the net's mouth and of the water in the tows at
-            hand, NaN where no instrument tells them.
+            hand, NaN where no instrument measures them.
         """
         return True
 
     def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
-        """Apply to inputs: true warp lengths and speed (3,) where instruments show ``inputs``."""
+        """Return the true warp lengths and speed (3,) where instruments show ``inputs``."""
         return inputs
 
     def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
-        """Gear model with the effect applied."""
+        """Return the gear model with the effect applied."""
         return model
 
     def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
-        """Apply to sensors: readings with the effect's errors."""
+        """Return the readings with the effect's errors."""
         return readings
 
 
 def sense(heading: float | None) -> float:
-    """Course sense on the track: 1 within a quarter turn of east, else -1.
+    """Return the sense of a course on the track: 1 within a quarter turn of east, else -1.
 
-    A current stays where it is when she turns round. Unknown headings are taken to be all the same.
+    A current does not turn when the ship does. Unknown headings are taken to be all the same.
     """
     return 1.0 if heading is None or math.cos(heading) >= 0.0 else -1.0

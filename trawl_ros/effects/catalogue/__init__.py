@@ -1,1 +1,1 @@
-"""The known effects by what they act on, each file with its `EFFECT` or `EFFECTS`."""
+"""The known effects by what they act on, each file with its `EFFECTS`."""

@@ -3,9 +3,9 @@
     reading = quantised(limited((1 + scale) truth + offset + drift + bias + noise
                                 [+ outlier] [+ longer way of a false echo]))
 
-and while the sensor hangs, the reading before. Each kind of error of each channel draws from a
-generator of its own, which follows from the seed and the channel's name. So neither another
-sensor nor another kind of error on this one changes what is drawn here.
+and the previous reading while the sensor hangs. Each kind of error of each channel has its own
+generator, which follows from the seed and the channel's name. So the random numbers of an error
+do not depend on other sensors or on other kinds of error.
 """
 
 import math
@@ -14,30 +14,50 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.errors.bursts import HOUR, NO_BURSTS, BurstModel, Bursts
-from trawl_ros.instruments.errors.false_echoes import FalseEchoes, FalseEchoModel
 from trawl_ros.instruments.errors.faults import Fault
-from trawl_ros.instruments.errors.noise import NO_NOISE, Noise, NoiseModel
-from trawl_ros.instruments.errors.random_streams import generator
+from trawl_ros.instruments.errors.random_processes import (
+    NO_BURSTS,
+    NO_NOISE,
+    SECONDS_PER_HOUR,
+    BurstModel,
+    Bursts,
+    FalseEchoes,
+    FalseEchoModel,
+    Noise,
+    NoiseModel,
+    generator,
+)
 
-FAR_OFF = 1.0
-"""Standard deviation of outliers that a fault brings, as a part of the reading."""
+FAULT_OUTLIER_STD_FRACTION = 1.0
+"""Standard deviation of the outliers of a fault, as a fraction of the reading."""
 
 
 @dataclass(frozen=True)
 class ErrorModel:
     """Error model of a channel, in the channel's unit.
 
-    ``white`` is drawn per sample. ``correlated_std`` is that of a first-order process
-    with ``correlation_time`` (s). ``bias_std`` is that of a constant drawn anew for each
-    state of the tow. Readings are multiples of ``resolution`` (0: not quantised).
-    ``stated_std`` is what the sensor's maker says of its noise.
-
-    ``scale`` is the part by which readings are too large, ``offset`` is added to them, and
-    ``drift`` per hour since the first reading. A share ``outlier_share`` of them is off by a
-    normal error of ``outlier_std`` more. None is below ``lowest`` or above ``highest``. In
-    spells of ``freezes`` the reading stays what it was, and so does a share ``repeated`` of all.
-    ``false_echoes`` come a longer way.
+    Attributes
+    ----------
+    white
+        Noise that is independent in each sample.
+    correlated_std, correlation_time
+        Standard deviation of a first-order process, and its time constant (s).
+    bias_std
+        Standard deviation of a constant that is drawn again for each state of the tow.
+    resolution
+        Step of quantised readings; 0 for none.
+    stated_std
+        Standard deviation of the noise as the sensor's maker states it.
+    scale, offset, drift
+        Relative excess of the readings, constant error, and error per hour since the first reading.
+    outlier_share, outlier_std
+        Share of readings with an additional normal error, and its standard deviation.
+    lowest, highest
+        Bounds of the readings.
+    freezes, repeated
+        Bursts in which the previous reading is repeated, and share of single repeated readings.
+    false_echoes
+        Echoes over a longer path.
     """
 
     white: NoiseModel = NO_NOISE
@@ -64,11 +84,11 @@ class ErrorChannel:
     Parameters
     ----------
     name
-        Unique among all channels; by convention topic and quantity.
+        Name that is unique among all channels; by convention topic and quantity.
     errors
-        Errors added to truth.
+        Errors added to the truth.
     seed
-        Not negative; shared by all channels.
+        Seed that all channels share; not negative.
     """
 
     def __init__(self, name: str, errors: ErrorModel, seed: int) -> None:
@@ -104,7 +124,7 @@ class ErrorChannel:
         self._faults.clear()
 
     def restart(self) -> None:
-        """Reset all but the faults: the same readings follow as from a new channel."""
+        """Reset everything except faults, so that readings are those of a new channel."""
         self._white = Noise(self.errors.white, self._generator('white'))
         self._driving = self._generator('correlated')
         self._wild = self._generator('outliers')
@@ -127,14 +147,14 @@ class ErrorChannel:
         Parameters
         ----------
         value
-            The truth, in the channel's unit.
+            True value, in the channel's unit.
         stamp
-            Time (ns); not before the last one.
+            Time (ns); it must not decrease.
         state
-            Number of the tow's state, which decides on the bias.
+            Number of the tow's state, which determines the bias.
         """
         errors = self.errors
-        # All is drawn whether it shows or not: a fault changes no reading after its end.
+        # Each error is drawn even if it has no effect: a fault changes no reading after its end.
         reading = value * (1.0 + errors.scale) + errors.offset + self._drift_at(stamp)
         reading += self._bias_of(state) + self._correlated_at(stamp)
         reading += self._white.draw(value) + self._outlier()
@@ -158,17 +178,17 @@ class ErrorChannel:
         if 'drift' in faults:
             if self._drift_began is None:
                 self._drift_began = stamp
-            reading += faults['drift'] * (stamp - self._drift_began) / SECOND / HOUR
+            reading += faults['drift'] * (stamp - self._drift_began) / SECOND / SECONDS_PER_HOUR
         if 'noise' in faults:
             reading += faults['noise'] * self._faulty.standard_normal()
         if 'outliers' in faults and self._faulty.random() < faults['outliers']:
-            reading += FAR_OFF * abs(reading) * self._faulty.standard_normal()
+            reading += FAULT_OUTLIER_STD_FRACTION * abs(reading) * self._faulty.standard_normal()
         return min(reading, faults.get('saturated', math.inf))
 
     def _drift_at(self, stamp: int) -> float:
         if self._first is None:
             self._first = stamp
-        return self.errors.drift * (stamp - self._first) / SECOND / HOUR
+        return self.errors.drift * (stamp - self._first) / SECOND / SECONDS_PER_HOUR
 
     def _outlier(self) -> float:
         if self.errors.outlier_share == 0.0:
@@ -177,7 +197,7 @@ class ErrorChannel:
         return float(size) if self._wild.random() < self.errors.outlier_share else 0.0
 
     def _bias_of(self, state: int) -> float:
-        # By number, not in turn: a state too short for a sample leaves the others as they are.
+        # Drawn by the number of the state: a state without a sample does not change the others.
         if self._bias is None or self._bias[0] != state:
             drawn = self._generator('bias', state).standard_normal()
             self._bias = state, self.errors.bias_std * drawn

@@ -1,4 +1,4 @@
-"""Plan of faults at times known before."""
+"""Plan of faults at given times."""
 
 import math
 from collections.abc import Sequence
@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.errors.faults import FaultPanel
-from trawl_ros.instruments.errors.sampling import TOLERANCE
+from trawl_ros.instruments.errors.instrument import STAMP_TOLERANCE_NS
 
 
 @dataclass(frozen=True)
 class PlannedFault:
-    """Planned fault from ``begin`` until ``end`` (s since the first truth; None: to the end)."""
+    """Planned fault from ``begin`` to ``end`` (s since the first truth; None for no end)."""
 
     begin: float
     end: float | None
@@ -25,9 +25,9 @@ class FaultPlan:
     Parameters
     ----------
     faults
-        All that are planned; those at places that the panel does not know are other instruments'.
+        All planned faults; those at places that the panel does not know are ignored.
     panel
-        The instruments.
+        Panel of the instruments.
     """
 
     def __init__(self, faults: Sequence[PlannedFault], panel: FaultPanel) -> None:
@@ -38,13 +38,13 @@ class FaultPlan:
         self._latest = 0
 
     def follow(self, stamp: int) -> None:
-        """Advance the plan to a stamp (ns); an earlier one than before starts it anew."""
+        """Advance the plan to a stamp (ns); a stamp before the last one restarts it."""
         if not self._faults:
             return
         if self._first is None or stamp < self._latest:
             self._first = stamp
         self._latest = stamp
-        since = (stamp + TOLERANCE - self._first) / SECOND
+        since = (stamp + STAMP_TOLERANCE_NS - self._first) / SECOND
         for number, fault in enumerate(self._faults):
             end = math.inf if fault.end is None else fault.end
             wanted = fault.begin <= since < end

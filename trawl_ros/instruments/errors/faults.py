@@ -1,8 +1,8 @@
 """Faults of sensors on command: their kinds, places and switching.
 
-A fault is named by a word and, where it has a size, a number in the SI unit of the quantity:
-``frozen``, ``offset -3.5``, ``scale 1.02``. It sits on a whole instrument (by its topic) or on
-one of its quantities (topic/quantity).
+A fault is written as a word and, if it has a size, a number in the SI unit of the quantity:
+``frozen``, ``offset -3.5``, ``scale 1.02``. Its place is a whole instrument (topic) or one of its
+quantities (topic/quantity).
 """
 
 import math
@@ -18,7 +18,7 @@ NONE = 'none'
 
 @dataclass(frozen=True)
 class FaultKind:
-    """Kind of fault: its description, and the range of its size; no range, no size."""
+    """Kind of fault: its description, and the range of its size if it has one."""
 
     sentence: str
     low: float | None = None
@@ -32,28 +32,26 @@ class FaultKind:
 
 OF_QUANTITIES: Mapping[str, FaultKind] = MappingProxyType(
     {
-        'frozen': FaultKind('the reading stays what it was'),
+        'frozen': FaultKind('the reading does not change'),
         'lost': FaultKind('the reading is NaN'),
-        'offset': FaultKind('this much is added', -math.inf),
-        'scale': FaultKind('the reading is multiplied by this', -math.inf),
-        'drift': FaultKind('this much more is added each hour', -math.inf),
+        'offset': FaultKind('this value is added to the reading', -math.inf),
+        'scale': FaultKind('the reading is multiplied by this factor', -math.inf),
+        'drift': FaultKind('the error grows by this value per hour', -math.inf),
         'noise': FaultKind('normal noise of this standard deviation is added', 0.0),
-        'outliers': FaultKind('this share of the readings lies far off', 0.0, 1.0),
-        'saturated': FaultKind('no reading is larger than this', -math.inf),
+        'outliers': FaultKind('this share of the readings is far from the truth', 0.0, 1.0),
+        'saturated': FaultKind('no reading exceeds this value', -math.inf),
     }
 )
-"""Faults of a quantity; on a whole instrument they sit on all of its quantities."""
+"""Faults of a quantity; on a whole instrument they act on all of its quantities."""
 
 OF_INSTRUMENTS: Mapping[str, FaultKind] = MappingProxyType(
     {
         'silent': FaultKind('nothing is sent'),
         'dropouts': FaultKind(
-            'this share of the time nothing is sent, in bursts of 10 s', 0.0, 0.99
+            'nothing is sent for this share of the time, in bursts of 10 s', 0.0, 0.99
         ),
         'late': FaultKind('samples are sent this many seconds later', 0.0, 3600.0),
-        'jitter': FaultKind(
-            'samples are taken off the beat by this standard deviation, s', 0.0, 60.0
-        ),
+        'jitter': FaultKind('sampling times vary with this standard deviation, s', 0.0, 60.0),
     }
 )
 """Faults of a whole instrument."""
@@ -63,7 +61,7 @@ KINDS: Mapping[str, FaultKind] = MappingProxyType({**OF_QUANTITIES, **OF_INSTRUM
 
 @dataclass(frozen=True)
 class Fault:
-    """Fault: a kind and its size (NaN where it has none)."""
+    """Fault: a kind and its size (NaN if it has none)."""
 
     kind: str
     size: float = math.nan
@@ -90,7 +88,9 @@ def parse_fault(text: str) -> Fault | None:
     kind = KINDS[word]
     if not kind.sized:
         if size.strip():
-            raise InstrumentError(f"fault '{text}': {word} has no size; expected '{word}'")
+            raise InstrumentError(
+                f"fault '{text}': found a size, but {word} has none; expected '{word}'"
+            )
         return Fault(word)
     try:
         number = float(size)
@@ -135,7 +135,7 @@ class FaultPanel:
     Parameters
     ----------
     instruments
-        With names of their own.
+        Instruments with different names.
     """
 
     def __init__(self, instruments: Sequence[Faulty]) -> None:
@@ -152,7 +152,7 @@ class FaultPanel:
         return tuple(found)
 
     def knows(self, where: str) -> bool:
-        """True if a place is one of these instruments'."""
+        """Return True if a place belongs to one of these instruments."""
         return self._place(where) is not None
 
     def check(self, where: str, what: str) -> tuple[Faulty, str | None, Fault | None]:
@@ -161,7 +161,7 @@ class FaultPanel:
         Raises
         ------
         InstrumentError
-            If there is no such place or fault, or the fault cannot sit there.
+            If there is no such place or fault, or the place cannot have the fault.
         """
         place = self._place(where)
         if place is None:
@@ -174,18 +174,18 @@ class FaultPanel:
             return instrument, quantity, None
         if quantity is not None and fault.kind in OF_INSTRUMENTS:
             raise InstrumentError(
-                f"fault at '{where}': {fault.kind} concerns a whole instrument; expected "
-                f"'{instrument.name}'"
+                f"fault at '{where}': found {fault.kind}, a fault of a whole instrument; expected "
+                f"the place '{instrument.name}'"
             )
         if not instrument.quantities and fault.kind in OF_QUANTITIES:
             raise InstrumentError(
-                f"fault at '{where}': {fault.kind} concerns a quantity, and '{where}' has none; "
-                f'expected one of {", ".join(OF_INSTRUMENTS)}'
+                f"fault at '{where}': found {fault.kind}, a fault of a quantity, but this "
+                f'instrument has none; expected one of {", ".join(OF_INSTRUMENTS)}'
             )
         return instrument, quantity, fault
 
     def switch(self, where: str, what: str) -> None:
-        """Activate a fault, or deactivate all of a place by ``none``.
+        """Activate a fault at a place, or deactivate all of its faults with ``none``.
 
         Raises
         ------
@@ -199,7 +199,7 @@ class FaultPanel:
             instrument.put(fault, quantity)
 
     def switch_off(self, where: str, what: str) -> None:
-        """Deactivate one fault that `switch` has activated, and leave others at its place."""
+        """Deactivate one fault that `switch` has activated; other faults stay active."""
         place, fault = self._place(where), parse_fault(what)
         if place is not None and fault is not None:
             instrument, quantity = place

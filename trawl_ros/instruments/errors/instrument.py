@@ -8,15 +8,25 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.errors.bursts import HOUR, NO_BURSTS, BurstModel, Bursts
 from trawl_ros.instruments.errors.channel import ErrorChannel, ErrorModel
 from trawl_ros.instruments.errors.faults import OF_INSTRUMENTS, Fault
-from trawl_ros.instruments.errors.random_streams import generator
-from trawl_ros.instruments.errors.sampling import TOLERANCE, Sampler
+from trawl_ros.instruments.errors.random_processes import (
+    NO_BURSTS,
+    SECONDS_PER_HOUR,
+    BurstModel,
+    Bursts,
+    generator,
+)
 from trawl_ros.instruments.errors.timing import Timing
 
 PartT = TypeVar('PartT')
 SampleT = TypeVar('SampleT')
+
+STAMP_TOLERANCE_NS = 1_000
+"""Bound of the rounding error of stamps that were made from seconds in floating point."""
+
+MAX_JITTER_FRACTION = 0.45
+"""Greatest jitter as a fraction of the period; samples keep their order below one half."""
 
 DROPOUT_S = 10.0
 """Mean length of the bursts of a fault 'dropouts'."""
@@ -26,13 +36,64 @@ DROPOUT_S = 10.0
 class SeedPlan:
     """Seed plan of an instrument's random numbers.
 
-    ``seed`` is not negative. ``state_changes`` are the times at which biases are drawn anew,
-    rising, in seconds since the instrument's first truth. They are given, as a trial's plan
-    gives them, and not guessed from the truth: a door sensor cannot see the warps move.
+    ``seed`` is not negative. ``state_changes`` are the rising times at which biases are drawn
+    again, in seconds since the instrument's first truth. The plan of a trial gives them; they
+    cannot follow from the truth, because a door sensor does not see the warps move.
     """
 
     seed: int = 0
     state_changes: tuple[float, ...] = ()
+
+
+class Sampler:
+    """Sampler: decides at which stamps a sample is due.
+
+    It uses the stamps of the truth only, so that results do not depend on the machine. The first
+    stamp is due, then each multiple of the period since, at the first stamp that reaches it. So
+    the mean rate is right for any pace of the truth. If the truth is slower than the sensor, each
+    stamp is due.
+
+    Parameters
+    ----------
+    rate
+        Samples per second.
+    start_up
+        Time (s) after the first stamp in which nothing is due.
+    """
+
+    def __init__(self, rate: float, start_up: float = 0.0) -> None:
+        self._rate = rate
+        self._start_up = round(start_up * SECOND)
+        self._first = 0
+        self._latest: int | None = None
+        self._next = 0
+
+    @property
+    def first(self) -> int:
+        """Stamp of the first truth (ns)."""
+        return self._first
+
+    def restarted(self, stamp: int) -> bool:
+        """Register a stamp (ns); return True if it is the first or precedes the last one."""
+        restarts = self._latest is None or stamp < self._latest
+        self._latest = stamp
+        if restarts:
+            self._first = stamp
+            self._next = 0
+        return restarts
+
+    def due(self, stamp: int, shift_s: float = 0.0) -> bool:
+        """Return True if a sample is due at ``stamp`` (ns), which `restarted` has registered.
+
+        ``shift_s`` is the delay of the next sample after its regular time, s.
+        """
+        since = stamp + STAMP_TOLERANCE_NS - self._first - self._start_up
+        most = MAX_JITTER_FRACTION / self._rate
+        shift = round(min(max(shift_s, -most), most) * SECOND)
+        if since < round(self._next * SECOND / self._rate) + shift or since < 0:
+            return False
+        self._next = max(self._next + 1, int((since - shift) * self._rate / SECOND) + 1)
+        return True
 
 
 class SamplingClock:
@@ -41,11 +102,11 @@ class SamplingClock:
     Parameters
     ----------
     name
-        Of the instrument.
+        Name of the instrument.
     timing
-        Without faults.
+        Timing without faults.
     seed
-        Shared by all instruments.
+        Seed that all instruments share.
     """
 
     def __init__(self, name: str, timing: Timing, seed: int) -> None:
@@ -69,7 +130,7 @@ class SamplingClock:
 
     @property
     def latency_s(self) -> float:
-        """Time from sampling to sending."""
+        """Time from sampling to sending, s."""
         return self._timing.latency + self._faults.get('late', 0.0)
 
     def put(self, fault: Fault) -> None:
@@ -77,7 +138,7 @@ class SamplingClock:
         self._faults[fault.kind] = fault.size
         if fault.kind == 'dropouts':
             share = fault.size
-            rate = HOUR * share / (DROPOUT_S * (1.0 - share))
+            rate = SECONDS_PER_HOUR * share / (DROPOUT_S * (1.0 - share))
             drawn = generator(self._seed, f'{self._name}/fault')
             self._faulty = Bursts(BurstModel(rate, DROPOUT_S), drawn)
 
@@ -92,15 +153,15 @@ class SamplingClock:
         for kind in list(self._faults):
             self.take_off(kind)
 
-    def started_anew(self, stamp: int) -> bool:
-        """Register a stamp (ns); True if it is the first, or lies before the last one."""
-        anew = self._sampler.started_anew(stamp)
-        if anew:
+    def restarted(self, stamp: int) -> bool:
+        """Register a stamp (ns); return True if it is the first or precedes the last one."""
+        restarts = self._sampler.restarted(stamp)
+        if restarts:
             self._restart()
-        return anew
+        return restarts
 
     def due(self, stamp: int) -> bool:
-        """True if a sample is due at a stamp (ns), which `started_anew` has registered."""
+        """Return True if a sample is due at a stamp (ns), which `restarted` has registered."""
         size = self._timing.jitter + self._faults.get('jitter', 0.0)
         if not self._sampler.due(stamp, size * self._shift if size else 0.0):
             return False
@@ -108,8 +169,8 @@ class SamplingClock:
         return True
 
     def sends(self, stamp: int) -> bool:
-        """True if a sample taken at a stamp (ns) is sent."""
-        # All are asked, so that each has its own time.
+        """Return True if a sample taken at a stamp (ns) is sent."""
+        # Each process is advanced at each stamp, so that they do not depend on each other.
         dropped, faulty = self._dropouts.on(stamp), self._faulty.on(stamp)
         missed = self._timing.missed > 0.0 and self._missed.random() < self._timing.missed
         return not (dropped or faulty or missed or 'silent' in self._faults)
@@ -132,18 +193,18 @@ class SamplingClock:
 class Instrument(ABC, Generic[PartT, SampleT]):
     """Instrument: observes its part of the truth and reports samples at its rate.
 
-    It samples on the stamps it is shown, never on a clock. A stamp before the last one (a
-    looping bag, a reset simulation) starts it anew, with the readings of a new instrument;
-    faults stay.
+    It samples by the stamps of the truth, never by a clock. A stamp before the last one (a looping
+    bag, a reset simulation) restarts it: readings are those of a new instrument, faults stay
+    active.
 
     Parameters
     ----------
     name
-        Unique among all instruments: its topic.
+        Its topic, unique among all instruments.
     timing
         Timing of sampling and sending.
     errors
-        Errors of each of its channels, by the channel's name.
+        Error model of each channel, by the channel's name.
     draws
         Seed and changes of state.
     """
@@ -204,38 +265,37 @@ class Instrument(ABC, Generic[PartT, SampleT]):
         Parameters
         ----------
         part
-            Part of the truth that this instrument sees; of its class's type.
+            Part of the truth that this instrument sees, of the type of its class.
         stamp
-            Of that truth, ns.
+            Stamp of that truth, ns.
 
         Returns
         -------
         list of Sample
-            Samples sent now: one of this stamp where one is due, or, where sending takes
-            time, one of an earlier stamp.
+            Samples that arrive now. A latency makes them samples of earlier stamps.
         """
-        if self._beat.started_anew(stamp):
+        if self._beat.restarted(stamp):
             self._under_way.clear()
             for channel in self._channels.values():
                 channel.restart()
             self._restart()
         if self._beat.due(stamp):
-            self._state = bisect_right(self._changes, stamp + TOLERANCE - self._beat.first)
+            self._state = bisect_right(self._changes, stamp + STAMP_TOLERANCE_NS - self._beat.first)
             sample = self._read(part, stamp)
             if sample is not None and self._beat.sends(stamp):
                 at = stamp + round(self._beat.latency_s * SECOND)
                 self._under_way.append((at, sample))
         arrived = []
-        while self._under_way and self._under_way[0][0] <= stamp + TOLERANCE:
+        while self._under_way and self._under_way[0][0] <= stamp + STAMP_TOLERANCE_NS:
             arrived.append(self._under_way.popleft()[1])
         return arrived
 
     @abstractmethod
     def _read(self, part: PartT, stamp: int) -> SampleT | None:
-        """Return the sample that is due; None where nothing can be measured."""
+        """Return the sample that is due; None if nothing can be measured."""
 
     def _restart(self) -> None:
-        """Reset state beside that of the channels."""
+        """Reset the state of a subclass; channels are reset already."""
 
     def _measure(self, channel: str, value: float, stamp: int) -> float:
         return self._channels[channel].measure(value, stamp, self._state)

@@ -8,9 +8,8 @@ import numpy as np
 from pydantic import Field, create_model, model_validator
 
 from trawl_ros.core.schema import Record
-from trawl_ros.instruments.errors.bursts import BurstModel
 from trawl_ros.instruments.errors.channel import ErrorModel
-from trawl_ros.instruments.errors.noise import NoiseModel
+from trawl_ros.instruments.errors.random_processes import BurstModel, NoiseModel
 
 NotNegative = Annotated[float, Field(ge=0)]
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
@@ -18,20 +17,36 @@ Share = Annotated[float, Field(ge=0, le=1)]
 SoundSpeed = Annotated[float, Field(ge=1400, le=1600)]
 
 
-class ChannelErrors(Record):
-    """Errors of a channel in a unit of its own.
+def both_or_neither(**values: float) -> None:
+    """Check that two numbers are both positive or both zero.
 
-    Keys end in the unit. Standard deviations are ``noise_m``, drawn per sample, ``correlated_m``
-    of a first-order process with ``correlation_time_s``, ``bias_per_state_m``, drawn anew for
-    each state of the tow, and ``outlier_m`` of a share ``outlier_share`` of the readings.
-    ``scale_error`` is the part by which readings are too large, ``offset_m`` is added to them,
-    and ``drift_m_per_hour`` from the first reading on. Readings are multiples of
-    ``resolution_m``, none below ``lowest_m`` or above ``highest_m``. The sensor hangs
-    ``freezes_per_hour`` times, for ``freeze_s`` in the mean, and gives a share ``repeat_share``
-    of its readings a second time instead of a new one. ``stated_std_m`` is what the maker
-    states; if that is left out, noise and rounding together are stated. Noise grows by the part
-    ``noise_of_reading`` of the quantity, and is Student's t with ``noise_tail_dof`` degrees of
-    freedom, of the same standard deviation, where that is given.
+    Raises
+    ------
+    ValueError
+        If only one is positive; it names both keys.
+    """
+    (first, one), (second, other) = values.items()
+    if (one > 0) != (other > 0):
+        raise ValueError(
+            f'{first}: found {one:g} with {second} {other:g}, expected both or neither'
+        )
+
+
+class ChannelErrors(Record):
+    """Errors of a channel; keys end in its unit, here m.
+
+    Standard deviations are ``noise_m`` (independent in each sample), ``correlated_m`` (first-order
+    process with ``correlation_time_s``), ``bias_per_state_m`` (drawn again for each state of the
+    tow) and ``outlier_m`` (for a share ``outlier_share`` of the readings). Noise grows by the part
+    ``noise_of_reading`` of the quantity. With ``noise_tail_dof`` it has Student's t distribution
+    with these degrees of freedom and the same standard deviation.
+
+    ``scale_error`` is the relative excess of the readings, ``offset_m`` a constant error, and
+    ``drift_m_per_hour`` an error that grows from the first reading on. Readings are multiples of
+    ``resolution_m``, bounded by ``lowest_m`` and ``highest_m``. The sensor hangs
+    ``freezes_per_hour`` times, for ``freeze_s`` on average, and repeats a share ``repeat_share`` of
+    its readings. ``stated_std_m`` is the standard deviation that the maker states; by default it is
+    that of noise and rounding together.
     """
 
     unit: ClassVar[str]
@@ -50,18 +65,11 @@ class ChannelErrors(Record):
     def _time_for_correlation(self) -> 'ChannelErrors':
         if self._given('correlated') > 0 and self.correlation_time_s == 0:
             raise ValueError(
-                f'correlation_time_s: found 0, expected more, as correlated_{self.unit} is given'
+                f'correlation_time_s: found 0, expected more than 0 with correlated_{self.unit}'
             )
-        if (self.freezes_per_hour > 0) != (self.freeze_s > 0):
-            raise ValueError(
-                f'freezes_per_hour: found {self.freezes_per_hour:g} with freeze_s '
-                f'{self.freeze_s:g}, expected both or neither'
-            )
-        if (self.outlier_share > 0) != (self._given('outlier') > 0):
-            raise ValueError(
-                f'outlier_share: found {self.outlier_share:g} with outlier_{self.unit} '
-                f'{self._given("outlier"):g}, expected both or neither'
-            )
+        both_or_neither(freezes_per_hour=self.freezes_per_hour, freeze_s=self.freeze_s)
+        size = {f'outlier_{self.unit}': self._given('outlier')}
+        both_or_neither(outlier_share=self.outlier_share, **size)
         return self
 
     def model(self) -> ErrorModel:
@@ -104,9 +112,9 @@ def in_unit(unit: str, si: float = 1.0) -> Callable[[type[ErrorsT]], type[Errors
     Parameters
     ----------
     unit
-        Last words of the keys.
+        Ending of the keys.
     si
-        The unit in that of the SI.
+        Value of the unit in SI.
     """
     keys = {
         f'noise_{unit}': (NotNegative, 0.0),

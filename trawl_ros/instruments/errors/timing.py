@@ -6,18 +6,23 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
-from trawl_ros.instruments.errors.bursts import NO_BURSTS, BurstModel
-from trawl_ros.instruments.errors.records import NotNegative, Seconds, Share
+from trawl_ros.instruments.errors.random_processes import NO_BURSTS, BurstModel
+from trawl_ros.instruments.errors.records import NotNegative, Seconds, Share, both_or_neither
 
 
 @dataclass(frozen=True)
 class Timing:
-    """Timing of an instrument; times in s.
+    """Timing of an instrument.
 
-    ``rate`` in samples per second; ``jitter`` is the standard deviation with which samples are
-    off the beat, ``latency`` the time from sampling to sending, ``start_up`` the time after
-    switching on in which nothing is sampled; ``dropouts`` are spells in which nothing is sent,
-    and of the other samples the share ``missed`` is lost one by one.
+    Attributes
+    ----------
+    rate
+        Samples per second.
+    jitter, latency, start_up
+        Standard deviation of sampling times, time from sampling to sending, and time without
+        samples after switching on, s.
+    dropouts, missed
+        Bursts in which nothing is sent, and share of single samples that are lost.
     """
 
     rate: float
@@ -28,18 +33,18 @@ class Timing:
     missed: float = 0.0
 
 
-MOST_OFTEN = 100.0
-"""Samples per second, at most."""
+MAX_RATE_HZ = 100.0
+"""Greatest number of samples per second."""
 
-Rate = Annotated[float, Field(gt=0, le=MOST_OFTEN)]
+Rate = Annotated[float, Field(gt=0, le=MAX_RATE_HZ)]
 
 
 class Sent(Record):
     """Timing of sending.
 
-    It takes ``latency_s``, and fails ``dropouts_per_hour`` times, for ``dropout_s`` in the mean;
-    these lengths are exponentially distributed, or log-normal with ``dropout_log_std``. A share
-    ``missed_share`` of the samples is lost besides, one by one.
+    Sending takes ``latency_s``. It fails ``dropouts_per_hour`` times, for ``dropout_s`` on average;
+    these lengths are exponentially distributed, or log-normal with ``dropout_log_std``. In
+    addition a share ``missed_share`` of single samples is lost.
     """
 
     latency_s: Seconds = 0.0
@@ -50,17 +55,13 @@ class Sent(Record):
 
     @model_validator(mode='after')
     def _dropouts_have_a_length(self) -> 'Sent':
-        if (self.dropouts_per_hour > 0) != (self.dropout_s > 0):
-            raise ValueError(
-                f'dropouts_per_hour: found {self.dropouts_per_hour:g} with dropout_s '
-                f'{self.dropout_s:g}, expected both or neither'
-            )
+        both_or_neither(dropouts_per_hour=self.dropouts_per_hour, dropout_s=self.dropout_s)
         return self
 
     def timing(self) -> Timing:
-        """Return the timing of an instrument that samples whenever truth comes."""
+        """Return the timing of an instrument that samples at each stamp of the truth."""
         return Timing(
-            MOST_OFTEN, latency=self.latency_s, dropouts=self._bursts(), missed=self.missed_share
+            MAX_RATE_HZ, latency=self.latency_s, dropouts=self._bursts(), missed=self.missed_share
         )
 
     def _bursts(self) -> BurstModel:
@@ -70,8 +71,8 @@ class Sent(Record):
 class Timed(Sent):
     """Timing of sampling and sending.
 
-    ``rate_hz`` is that of its samples; ``jitter_s`` the standard deviation with which they are
-    off the beat, ``start_up_s`` the time after switching on before the first.
+    ``rate_hz`` is the rate of samples, ``jitter_s`` the standard deviation of their times, and
+    ``start_up_s`` the time from switching on to the first sample.
     """
 
     rate_hz: Rate

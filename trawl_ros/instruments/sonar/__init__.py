@@ -1,1 +1,1 @@
-"""The trawl sonar: what its beams meet, its image, and what is read off it."""
+"""The trawl sonar: echoes in its beams, its image, and readings from it."""

@@ -2,33 +2,33 @@
 
 import numpy as np
 
-PH = 8.0
-"""Acidity of the sea; it matters below some kilohertz only."""
+SEA_PH = 8.0
+"""Acidity of sea water; it matters only below some kilohertz."""
 
 
 def absorption(frequency: float, temperature: float, salinity: float, depth: float) -> float:
-    """Absorption coefficient of sound in sea water.
+    """Return the absorption coefficient of sound in sea water.
 
-    The simplified formula of Ainslie and McColm, J. Acoust. Soc. Am. 103(3), 1998, within 10 % of
-    that of Francois and Garrison (1982).
+    It is the simplified formula of Ainslie and McColm, J. Acoust. Soc. Am. 103(3), 1998, within
+    10 % of that of Francois and Garrison (1982).
 
     Parameters
     ----------
     frequency
-        Hz, up to 1 MHz.
+        Frequency, Hz, up to 1 MHz.
     temperature, salinity, depth
-        °C, g/kg and m.
+        State of the water, °C, g/kg and m.
 
     Returns
     -------
     float
-        dB/m.
+        Absorption, dB/m.
     """
     f, z = frequency / 1e3, depth / 1e3
     boric = 0.78 * np.sqrt(salinity / 35) * np.exp(temperature / 26)
     magnesium = 42 * np.exp(temperature / 17)
     per_km = (
-        0.106 * boric * f**2 / (boric**2 + f**2) * np.exp((PH - 8) / 0.56)
+        0.106 * boric * f**2 / (boric**2 + f**2) * np.exp((SEA_PH - 8) / 0.56)
         + 0.52
         * (1 + temperature / 43)
         * (salinity / 35)

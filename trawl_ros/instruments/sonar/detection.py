@@ -6,16 +6,21 @@ from trawl_ros.core.arrays import ByteArray, FloatArray, IntArray
 from trawl_ros.instruments.sonar.image import BRIGHTEST, Grid
 from trawl_ros.instruments.sonar.running import running_mean
 
-CLEAR = 12.0
-"""An echo is clear where the image is this much (dB) brighter than usual at its range: of the
-means of three cells of noise alone, whose levels scatter by 3.2 dB, few per million are."""
+CLEAR_CONTRAST_DB = 12.0
+"""Contrast from which an echo is clear.
 
-_ALONG = 3
-_NOISE_ALONG = 9
+Means over three cells of noise have a standard deviation of 3.2 dB; few per million exceed it.
+"""
+
+_SIGNAL_CELLS = 3
+"""Width of the mean along a beam."""
+
+_NOISE_CELLS = 9
+"""Width of the mean over ranges of the usual level."""
 
 
 def contrast(image: ByteArray, grid: Grid) -> FloatArray:
-    """Contrast of an image against the usual level at each range.
+    """Return the contrast of an image against the usual level at each range.
 
     Parameters
     ----------
@@ -25,11 +30,11 @@ def contrast(image: ByteArray, grid: Grid) -> FloatArray:
     Returns
     -------
     array
-        Shape (beams, cells), dB: means over three cells above the median of all beams; zero so
-        near to the sonar that its own pulse is heard.
+        Shape (beams, cells), dB: means over three cells, relative to the median of all beams; zero
+        at ranges where the sonar receives its own pulse.
     """
-    level = running_mean(image.astype(float), _ALONG) * (grid.span / BRIGHTEST)
-    usual = running_mean(np.median(level, axis=0), _NOISE_ALONG)
+    level = running_mean(image.astype(float), _SIGNAL_CELLS) * (grid.span / BRIGHTEST)
+    usual = running_mean(np.median(level, axis=0), _NOISE_CELLS)
     level -= usual
     level[:, grid.ranges < 2 * grid.min_range] = 0.0
     return level
@@ -41,16 +46,16 @@ def clear_echoes(image: ByteArray, grid: Grid) -> tuple[IntArray, IntArray]:
     Returns
     -------
     rows, columns
-        Shape (n,) each: the brightest cell of each run of clear cells, by row and range.
+        Shape (n,) each: brightest cell of each run of clear cells, sorted by row and range.
     """
     level = contrast(image, grid)
-    there = level >= CLEAR
+    there = level >= CLEAR_CONTRAST_DB
     begins = there & ~np.pad(there, ((0, 0), (1, 0)))[:, :-1]
     rows, starts = np.nonzero(begins)
     if len(rows) == 0:
         return rows, starts
     run = np.cumsum(begins.ravel()).reshape(there.shape)[there] - 1
-    # Sorted by run, then brightness: the last of each run is its brightest.
+    # Sorted by run, then brightness: the last cell of each run is its brightest.
     order = np.lexsort((level[there], run))
     last = order[np.append(np.flatnonzero(np.diff(run[order])), len(order) - 1)]
     columns: IntArray = np.nonzero(there)[1][last]
@@ -63,7 +68,7 @@ def first_echoes(image: ByteArray, grid: Grid) -> tuple[FloatArray, FloatArray]:
     Returns
     -------
     ranges, intensities
-        Shape (beams,) each: m, infinite without an echo, and brightness, then zero.
+        Shape (beams,) each: range (m) and brightness; infinity and zero without an echo.
     """
     ranges, intensities = np.full(grid.beams, np.inf), np.zeros(grid.beams)
     rows, columns = clear_echoes(image, grid)

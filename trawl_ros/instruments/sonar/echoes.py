@@ -1,7 +1,7 @@
-"""Echoes in the beams of the trawl sonar: of ropes, twine, fish and the seabed.
+"""Echoes in the beams of the trawl sonar: ropes, twine, fish and the seabed.
 
-All echoes are backscattering cross-sections σ in m², 10 log σ being the target strength, as the
-sonar receives them: weighed with its beam pattern on the way out and back.
+All echoes are backscattering cross-sections σ in m²; 10 log σ is the target strength. They are
+weighted with the beam pattern on both ways.
 """
 
 from collections.abc import Sequence
@@ -23,11 +23,11 @@ SEABED_STEPS = 4
 
 @dataclass(frozen=True)
 class Ping:
-    """Ping: direction of the beam (``angle``, rad, as the scan's) and the scatterers there.
+    """Ping: direction of the beam and the scatterers in reach.
 
-    ``position`` (3,) and ``axes`` (3, 3), whose columns are x, y, z, are the pose of frame
-    ``sonar`` in ``map``. ``section`` (k, 3) is that of `NetTruth`; ``altitude`` (m) is how far
-    the seabed is below, infinite without any.
+    ``angle`` (rad) is measured as in the scan. ``position`` (3,) and ``axes`` (3, 3), with columns
+    x, y, z, are the pose of frame ``sonar`` in ``map``. ``section`` (k, 3) is that of `NetTruth`;
+    ``altitude`` (m) is the height above the seabed, infinite without one.
     """
 
     angle: float
@@ -40,8 +40,9 @@ class Ping:
 
 @dataclass(frozen=True)
 class Beam:
-    """Beam: its full widths (rad) between the half-power points, ``width`` in the plane of the
-    sweep and ``thickness`` across it, and the ``wave_length`` (m) of its sound.
+    """Beam: full widths (rad) between half-power points, and ``wave_length`` (m).
+
+    ``width`` is in the plane of the sweep, ``thickness`` across it.
     """
 
     width: float
@@ -49,9 +50,9 @@ class Beam:
     wave_length: float
 
     def two_way(self, off: FloatArray) -> FloatArray:
-        """Power gain out and back at angles (rad) off the axis in the plane of the sweep.
+        """Return the two-way power gain at angles (rad) off the axis in the plane of the sweep.
 
-        That of a line transducer, (sin u / u)⁴: side lobes of -26.5 dB; none behind it.
+        It is that of a line transducer, (sin u / u)⁴, with side lobes of -26.5 dB; zero behind it.
         """
         u = HALF_POWER / np.pi * np.sin(off) / np.sin(0.5 * self.width)
         return np.where(np.abs(off) < np.pi / 2, np.sinc(u) ** 4, 0.0)
@@ -61,9 +62,9 @@ class Beam:
 class Strengths:
     """Backscattering strengths of scatterers.
 
-    ``rope`` is the part of the sound that hits a rope or twine and goes into all directions;
-    ``fish`` the cross-section of one fish, m²; ``seabed`` that of a square metre of seabed hit
-    at a right angle.
+    ``rope`` is the part of the sound on a rope or twine that is scattered in all directions;
+    ``fish`` the cross-section of one fish, m²; ``seabed`` that of a square metre of seabed at
+    normal incidence.
     """
 
     rope: float
@@ -74,12 +75,12 @@ class Strengths:
 def rope_cross_section(
     diameter: FloatArray, distance: FloatArray, beam: Beam, strengths: Strengths
 ) -> FloatArray:
-    """Cross-section (m²) of ropes that pass through a beam.
+    """Return the cross-section (m²) of ropes that pass through a beam.
 
-    Over the length l = distance × thickness that lies in the beam, a rope of diameter d is hit by
-    the sound of an area d l. Laid and braided ropes are rough, so of this the part ``rope`` goes
-    evenly into all directions: σ = rope d l / 4π. A thin one, k a < 1, scatters by (k a)³ less
-    (the high-pass form of Johnson, J. Acoust. Soc. Am. 61, 1977).
+    A rope of diameter d has the length l = distance × thickness in the beam and receives the sound
+    of the area d l. Laid and braided ropes are rough, so the part ``rope`` is scattered evenly in
+    all directions: σ = rope d l / 4π. A thin rope, k a < 1, scatters less by (k a)³ (high-pass
+    model of Johnson, J. Acoust. Soc. Am. 61, 1977).
     """
     radius = np.pi * diameter / beam.wave_length
     shape = radius**3 / (1 + radius**3)
@@ -90,8 +91,8 @@ def rope_cross_section(
 class Sounding:
     """Conversion of travel time into range.
 
-    ``stretch`` is the speed of sound it assumes over the true one; ``pulse`` (m) the length in
-    range between the half-power points of an echo from a point.
+    ``stretch`` is the assumed speed of sound over the true one; ``pulse`` (m) the length in range
+    between the half-power points of the echo of a point.
     """
 
     stretch: float
@@ -106,12 +107,12 @@ def echoes(
     sounding: Sounding,
     generator: np.random.Generator,
 ) -> FloatArray:
-    """Mean cross-section received, for each beam and cell.
+    """Return the mean received cross-section of each beam and cell.
 
     Parameters
     ----------
     pings
-        One per beam.
+        One ping per beam.
     generator
         Generator for the number of fish in a cell; not used without a school.
 
@@ -153,17 +154,17 @@ def _seabed(
     strengths: Strengths,
     stretch: float,
 ) -> FloatArray:
-    """Cross-sections of a level seabed in patches, by Lambert's law (cosine squared)."""
+    """Return the cross-sections of a level seabed in patches, by Lambert's law (cosine squared)."""
     step = grid.angle_increment / SEABED_STEPS
     angle = np.arange(-0.5 * np.pi, 0.5 * np.pi, step)
     down = np.array([-ping.axes[2] for ping in pings])
     altitude = np.array([ping.altitude for ping in pings])
-    # Descent of each direction in the sonar's plane.
+    # Downward component of each direction in the sonar's plane.
     slope = np.outer(down[:, 0], np.cos(angle)) + np.outer(down[:, 1], np.sin(angle))
     row, column = np.nonzero(slope * grid.max_range > stretch * altitude[:, None])
     slope = slope[row, column]
     distance = altitude[row] / slope
-    # A width of r dφ seen from the sonar is longer along the seabed, over its slope.
+    # A width r dφ normal to the ray is r dφ / slope along the seabed.
     area = distance * step * distance * beam.thickness / slope
     strength = strengths.seabed * slope**2 * area * beam.two_way(angle[column] - axis[row])
     return _gathered(row, stretch * distance, strength, grid)
@@ -178,7 +179,7 @@ def _fish(
     stretch: float,
     generator: np.random.Generator,
 ) -> FloatArray:
-    """Cross-sections of fish, drawn cell by cell, in their own beam and its neighbours."""
+    """Return the cross-sections of fish, drawn cell by cell, in all beams that receive them."""
     true_cell = grid.cell / stretch
     ranges = grid.ranges / stretch
     volume = true_cell * (ranges * grid.angle_increment) * (ranges * beam.thickness)
@@ -198,7 +199,7 @@ def _turned(angle: FloatArray) -> FloatArray:
 
 
 def _gathered(rows: IntArray, ranges: FloatArray, strengths: FloatArray, grid: Grid) -> FloatArray:
-    """Distribute point targets over cells, each shared by the two whose middles are nearest."""
+    """Distribute point targets over cells; the two nearest cells share each target."""
     place = ranges / grid.cell - 0.5
     first = np.floor(place).astype(int)
     share = place - first
@@ -214,9 +215,9 @@ def _gathered(rows: IntArray, ranges: FloatArray, strengths: FloatArray, grid: G
 
 
 def _as_long_as_a_pulse(received: FloatArray, cells: float) -> FloatArray:
-    """Smear each cell over a bell curve of so many cells between half-power points.
+    """Smear each cell over a bell curve of ``cells`` cells between half-power points.
 
-    The peak keeps its height, as a point's echo is as strong as the point for its whole length.
+    The peak keeps its height: the echo of a point has its full strength for the whole pulse.
     """
     reach = int(np.ceil(1.5 * cells))
     bell = 0.5 ** ((2 * np.arange(-reach, reach + 1) / cells) ** 2)

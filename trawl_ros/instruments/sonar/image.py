@@ -7,16 +7,17 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 
 BRIGHTEST = 255
+"""Greatest value of a pixel."""
 
 
 @dataclass(frozen=True)
 class Grid:
     """Grid of an image: meaning of its rows, columns and values.
 
-    ``beams`` rows: row i looks at ``angle_min`` + i ``angle_increment`` (rad about z of frame
-    ``sonar``: 0 down, positive to port). ``cells`` columns: column j holds what comes from
-    (j + ½) ``max_range`` / ``cells`` (m). Nothing is heard from nearer than ``min_range`` (m).
-    Brightness rises with the level: from 0 to 255 by ``span`` dB.
+    The beam of row i of ``beams`` points at ``angle_min`` + i ``angle_increment`` (rad about z of
+    frame ``sonar``: 0 down, positive to port). Column j of ``cells`` has the echoes at the range
+    (j + ½) ``max_range`` / ``cells`` (m). Ranges below ``min_range`` (m) have no echoes.
+    Brightness rises from 0 to 255 over ``span`` dB.
     """
 
     beams: int

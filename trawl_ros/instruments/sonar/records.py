@@ -1,4 +1,4 @@
-"""Records of the trawl sonar in a file, beside its timing."""
+"""Records of the trawl sonar in a file, without its timing."""
 
 from typing import Annotated
 
@@ -12,6 +12,7 @@ from trawl_ros.instruments.errors.records import (
     NotNegative,
     Share,
     SoundSpeed,
+    both_or_neither,
 )
 from trawl_ros.instruments.sonar.echoes import Beam, Strengths
 from trawl_ros.instruments.sonar.image import Grid
@@ -21,13 +22,14 @@ Level = Annotated[float, Field(ge=-300, le=300)]
 Positive = Annotated[float, Field(gt=0)]
 BeamAngle = Annotated[float, Field(gt=0, le=60)]
 
-SLOWEST_SOUND = 1440.0
-"""Sound is not slower than this (m/s) in salt water that is not frozen."""
+LEAST_SOUND_SPEED_M_S = 1440.0
+"""Least speed of sound in salt water that is not frozen."""
 
 
 class InterferenceRecord(Record):
-    """Interference by another sonar: a pulse of ``pulse_ms`` every ``period_s``, with ``level_db``
-    (dB re 1 µPa) at the receiver.
+    """Interference by another sonar: a pulse of ``pulse_ms`` every ``period_s``.
+
+    ``level_db`` (dB re 1 µPa) is its level at the receiver.
     """
 
     period_s: Annotated[float, Field(ge=0.01, le=100)]
@@ -38,22 +40,21 @@ class InterferenceRecord(Record):
 class SweepRecord(Record):
     """Trawl sonar: sector of a sweep, levels and noise of sound, brightness of the screen.
 
-    ``sector_deg`` is swept by ``beams`` pings, from starboard to port through straight down; the
-    image has ``cells`` columns up to ``max_range_m``, and hears nothing nearer than
-    ``min_range_m``. Beams are ``beam_width_deg`` wide in the plane of the sweep and
-    ``beam_thickness_deg`` across it, both between half-power points.
+    ``beams`` pings sweep over ``sector_deg``, from starboard to port through straight down. The
+    image has ``cells`` columns up to ``max_range_m``, and no echoes nearer than ``min_range_m``.
+    Beams are ``beam_width_deg`` wide in the plane of the sweep and ``beam_thickness_deg`` across
+    it, both between half-power points.
 
     ``source_level_db`` is re 1 µPa m, ``noise_level_db`` re 1 µPa in the band of the receiver.
-    Ranges are times by ``assumed_sound_speed_m_s``, and the time-varied gain makes
-    ``assumed_absorption_db_km`` good. The image is black at a target strength of ``black_db`` and
-    white at ``white_db``. Ropes and twine scatter ``rope_reflectivity`` of the sound that hits
-    them; ``fish_target_strength_db`` is that of one fish, ``seabed_strength_db`` that of a square
-    metre of seabed hit at a right angle.
+    Travel times are converted with ``assumed_sound_speed_m_s``; the time-varied gain compensates
+    ``assumed_absorption_db_km``. The image is black at a target strength of ``black_db`` and white
+    at ``white_db``. Ropes and twine scatter the part ``rope_reflectivity`` of the sound;
+    ``fish_target_strength_db`` is that of one fish, ``seabed_strength_db`` that of a square metre
+    of seabed at normal incidence.
 
-    Errors: ``gain`` of the whole sweep, ``angle`` by which the beams look more to port than they
-    say, a share ``dead_ping_share`` of pings from which nothing comes back, and a screen that
-    hangs ``freezes_per_hour`` times, for ``freeze_s`` in the mean; ``interference``, where there is
-    some.
+    Errors are the ``gain`` of the whole sweep, the ``angle`` of the beams to port, a share
+    ``dead_ping_share`` of pings without echoes, a screen that hangs ``freezes_per_hour`` times for
+    ``freeze_s`` on average, and ``interference``.
     """
 
     beams: Annotated[int, Field(ge=8, le=720)]
@@ -89,22 +90,18 @@ class SweepRecord(Record):
                 raise ValueError(
                     f'{high}: found {most:g}, expected more than {low}, which is {least:g}'
                 )
-        if (self.freezes_per_hour > 0) != (self.freeze_s > 0):
-            raise ValueError(
-                f'freezes_per_hour: found {self.freezes_per_hour:g} with freeze_s '
-                f'{self.freeze_s:g}, expected both or neither'
-            )
+        both_or_neither(freezes_per_hour=self.freezes_per_hour, freeze_s=self.freeze_s)
         return self
 
     @property
     def listening_s(self) -> float:
         """Shortest listening time of a ping, s."""
-        return 2 * self.max_range_m / SLOWEST_SOUND
+        return 2 * self.max_range_m / LEAST_SOUND_SPEED_M_S
 
     def grid(self) -> Grid:
         """Return the grid of the images."""
         sector = np.radians(self.sector_deg)
-        # A full circle does not look twice into the same direction.
+        # The first and last beam of a full circle must not coincide.
         steps = self.beams if self.sector_deg == 360 else self.beams - 1
         return Grid(
             beams=self.beams,

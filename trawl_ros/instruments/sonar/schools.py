@@ -20,12 +20,12 @@ def inside(
     position : (3,) array
         Common start of the lines, m.
     ways : (n, 3) array
-        Unit vectors.
+        Unit vectors along the lines.
 
     Returns
     -------
     near, far : (n,) arrays
-        m, negative behind the start; infinite where a line misses the school.
+        Distances, m, negative behind the start; infinite for lines that miss the school.
     """
     start = 2 * (position - school.position) / school.size
     move = 2 * ways / school.size
@@ -37,5 +37,5 @@ def inside(
 
 
 def fish_in(school: SchoolTruth) -> float:
-    """Number of fish."""
+    """Return the number of fish in a school."""
     return school.density * math.pi / 6 * float(np.prod(school.size))

@@ -1,4 +1,4 @@
-"""Receiver and screen: from echoes to an image with levels, noise, speckle and 8 bits."""
+"""Receiver and screen: from echoes to an 8-bit image with noise and speckle."""
 
 from dataclasses import dataclass
 
@@ -17,9 +17,9 @@ def power(level: FloatArray | float) -> FloatArray:
 class Receiver:
     """Receiver: conversion of an echo into brightness.
 
-    ``source_level`` dB re 1 µPa m; ``noise_level`` dB re 1 µPa in the receiver's band;
-    ``absorption`` dB/m that the time-varied gain makes good; the image is black at a target
-    strength of ``black`` and white at ``white``, dB re 1 m².
+    ``source_level`` is in dB re 1 µPa m, ``noise_level`` in dB re 1 µPa in the receiver's band,
+    ``absorption`` the one that the time-varied gain compensates, dB/m. The image is black at a
+    target strength of ``black`` and white at ``white``, dB re 1 m².
     """
 
     source_level: float
@@ -29,15 +29,15 @@ class Receiver:
     white: float
 
     def gain(self, ranges: FloatArray) -> FloatArray:
-        """Time-varied gain (dB) at ranges (m), 40 log r + 2 α r: a point stays as bright."""
+        """Return the time-varied gain (dB) at ranges (m): 40 log r + 2 α r, for point targets."""
         return 40 * np.log10(ranges) + 2 * self.absorption * ranges
 
     def unwanted(self, level: float, ranges: FloatArray) -> FloatArray:
-        """Apparent cross-section (m²) of sound of a level (dB re 1 µPa) at ranges (m)."""
+        """Return the apparent cross-section (m²) of noise of a level (dB re 1 µPa) at ranges."""
         return power(level - self.source_level + self.gain(ranges))
 
     def brightness(self, strength: FloatArray, gain: float) -> ByteArray:
-        """Image (uint8) of cross-sections (m²), with an excess ``gain`` (dB)."""
+        """Return the image (uint8) of cross-sections (m²) with an excess ``gain`` (dB)."""
         level = 10 * np.log10(np.maximum(strength, np.finfo(float).tiny)) + gain
         share = (level - self.black) / (self.white - self.black)
         return np.clip(np.round(BRIGHTEST * share), 0, BRIGHTEST).astype(np.uint8)
@@ -45,7 +45,7 @@ class Receiver:
 
 @dataclass(frozen=True)
 class Interference:
-    """Interference: a pulse of ``length`` s every ``period`` s, of ``level`` dB re 1 µPa here."""
+    """Interference: a pulse of ``length`` s every ``period`` s, at ``level`` dB re 1 µPa."""
 
     period: float
     length: float
@@ -55,18 +55,18 @@ class Interference:
 def heard(
     echoes: FloatArray, grid: Grid, receiver: Receiver, true_absorption: float, stretch: float
 ) -> FloatArray:
-    """Received cross-sections (m²), mean with noise.
+    """Return the mean received cross-sections (m²) with noise.
 
-    The sonar equation: source level - 40 log r - 2 α r + target strength is received, and
-    time-varied gain is put on top. It makes spreading good but for the ``stretch`` of ranges
-    (assumed speed of sound over the true one), and absorption as far as the receiver knows it.
+    By the sonar equation the received level is source level - 40 log r - 2 α r + target strength;
+    the time-varied gain is added. It compensates spreading except for the ``stretch`` of ranges
+    (assumed speed of sound over the true one), and the absorption that the receiver assumes.
 
     Parameters
     ----------
     echoes
         Shape (beams, cells), m², from `trawl_ros.instruments.sonar.echoes`.
     true_absorption
-        Of the water, dB/m.
+        Absorption in the water, dB/m.
     """
     ranges = grid.ranges
     true = ranges / stretch
@@ -78,10 +78,10 @@ def heard(
 def interfering(
     times: FloatArray, grid: Grid, receiver: Receiver, other: Interference, assumed_speed: float
 ) -> FloatArray:
-    """Apparent cross-sections (beams, cells) of another sonar's pulses, m².
+    """Return the apparent cross-sections (beams, cells) of another sonar's pulses, m².
 
-    Its pulses come at whole multiples of its period, whatever the ``times`` (beams,) of the
-    pings (s): they wander through the image as a dotted spiral.
+    Its pulses come at multiples of its period, independent of the ``times`` (beams,) of the pings
+    (s). In the image they form a dotted spiral.
     """
     arrival = 2 * grid.ranges / assumed_speed
     into_period = (times[:, None] + arrival) % other.period
@@ -91,5 +91,5 @@ def interfering(
 
 
 def speckled(mean: FloatArray, generator: np.random.Generator) -> FloatArray:
-    """Speckle: power of many waves with random phases, Rayleigh in amplitude, here squared."""
+    """Return powers with speckle, exponentially distributed (Rayleigh in amplitude)."""
     return mean * generator.standard_exponential(mean.shape)

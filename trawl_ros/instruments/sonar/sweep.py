@@ -1,4 +1,4 @@
-"""Sweep of the trawl sonar: pings made while the gear moves, assembled to an image."""
+"""Sweep of the trawl sonar: pings made while the gear moves, combined into an image."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,8 +20,8 @@ from trawl_ros.records.surroundings import Surroundings
 class Sweep:
     """Complete sweep.
 
-    ``stamp`` (ns) is that of its first ping; ``image`` (beams, cells) uint8; ``pings`` those that
-    were made, one per row from the first on.
+    ``stamp`` (ns) is that of its first ping; ``image`` is (beams, cells), uint8; ``pings`` has one
+    ping per row, from the first row on.
     """
 
     stamp: int
@@ -30,9 +30,9 @@ class Sweep:
     pings: tuple[Ping, ...]
 
     def points(self) -> FloatArray:
-        """Clear echoes in ``map`` with their brightness, (n, 4).
+        """Return the clear echoes in ``map`` with their brightness, (n, 4).
 
-        Each lies where the beam of its row was thought to look from the pose at its ping.
+        Their positions follow from the nominal angle of the row and the pose at its ping.
         """
         rows, columns = clear_echoes(self.image, self.grid)
         made = rows < len(self.pings)
@@ -47,7 +47,7 @@ class Sweep:
 
 @dataclass(frozen=True)
 class SweepGenerators:
-    """Random generators of an image, each for one kind of chance."""
+    """Random generators of an image: for fish, speckle and dead pings."""
 
     fish: np.random.Generator
     speckle: np.random.Generator
@@ -68,19 +68,19 @@ def image_of(
     Parameters
     ----------
     pings
-        One per beam, from the first on; rows of pings that were not made stay black.
+        Pings, one per beam from the first on; rows without a ping stay black.
     stamp
-        Of the first, ns.
+        Stamp of the first ping, ns.
     record
-        The sonar.
+        Parameters of the sonar.
     interval_s
-        From ping to ping, s.
+        Time from ping to ping, s.
     gain
-        By how much (dB) the receiver amplifies too much; NaN where it is dead.
+        Excess gain of the receiver, dB; NaN if it is dead.
     surroundings
-        The water.
+        Water around the sonar.
     luck
-        Generator of random numbers.
+        Generators of random numbers.
 
     Returns
     -------
@@ -88,7 +88,7 @@ def image_of(
         Shape (beams, cells), uint8.
     """
     grid, receiver = record.grid(), record.receiver()
-    # All is drawn whether it shows or not: a fault changes no image after its end.
+    # Everything is drawn even if it has no effect: a fault changes no image after its end.
     dead = luck.dead.random(grid.beams) < record.dead_ping_share
     depth = max(0.0, -float(pings[0].position[2]))
     speed = surroundings.sound_speed(depth)
@@ -112,7 +112,7 @@ def image_of(
     image = np.zeros((grid.beams, grid.cells), dtype=np.uint8)
     if np.isfinite(gain):
         image[:] = receiver.brightness(level, gain)
-        # The sonar's own pulse, while it goes out.
+        # The outgoing pulse saturates the receiver.
         image[:, grid.ranges < grid.min_range] = BRIGHTEST
     image[dead] = 0
     image[len(pings) :] = 0

@@ -1,4 +1,4 @@
-"""Catch on the codend's line: where it lies, and the lumps that it makes of the nodes there."""
+"""Catch on the codend's line: its place, and its lumps at the nodes there."""
 
 from dataclasses import dataclass
 
@@ -39,8 +39,8 @@ class CodendCatch:
 
         Rows of an array (4, n), in water of a density (kg/m³).
 
-        The water between the fish goes with them. The added mass is that of a ball, half of the
-        volume.
+        The water between the fish moves with them. The added mass is that of a sphere, half of
+        the volume.
         """
         fish = catch.mass_kg / catch.density_kg_m3
         volume = self.body.volume

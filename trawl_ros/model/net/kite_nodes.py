@@ -10,8 +10,10 @@ from trawl_ros.core.arrays import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class KiteNodes:
-    """Carrying nodes of the kite: ``nodes`` (3,) numbers, one of which may be there twice,
-    and ``weights`` (2, 3) that make its front and rear carrying points of them.
+    """Carrying nodes of the kite.
+
+    ``nodes`` (3,) are their numbers, of which two may be equal; ``weights`` (2, 3) combine them
+    into the front and the rear carrying point.
     """
 
     nodes: IntArray
@@ -36,4 +38,4 @@ class KiteNodes:
 
 
 NO_KITE = KiteNodes(np.zeros(3, int), np.zeros((2, 3)))
-"""For gear without a kite, whose area and mass are zero as well."""
+"""Nodes for a gear without a kite, whose area and mass are zero as well."""

@@ -1,17 +1,17 @@
-"""Grouping of the netting: a tube of numerical diamond meshes that stand for the real ones.
+"""Grouping of the netting: a tube of numerical diamond meshes, each of which stands for many.
 
-A numerical row is as long as makes ``around`` numerical meshes as wide as the real ones are
-together: rest length = stretched circumference / (2 around). Then a numerical mesh has the
-same angle as the real ones, and ``real meshes around / around`` real bars lie side by side in
-each numerical bar: twine length, area, volume, stiffness and knots are kept, row by row.
+The length of a row makes ``around`` numerical meshes as wide as all real meshes together: rest
+length = stretched circumference / (2 around). Then numerical and real meshes have the same angle,
+and each numerical bar stands for ``real meshes around / around`` real bars side by side. Twine
+length, area, volume, stiffness and knots are conserved row by row.
 
-Toward the codend rows get short, which would not make the answer better: where the gear file
-says so, two numerical meshes are joined to one, which is twice as long. Every second line of bars
-ends there; those from the corners of the wings, which carry much, go on.
+Toward the codend rows become short without any gain in accuracy. Where the gear file says so, two
+numerical meshes are joined to one of twice the length. Every second line of bars ends there; the
+lines from the corners of the wings, which carry high loads, continue.
 
 Nodes of even rows lie at multiples of the angular pitch from the top, those of odd rows half
-a pitch further, so the net is its own mirror image and has a node at the headrope's centre.
-The codend is one line: its meshes are too small for rows, and their drag is put on its nodes.
+a pitch further. So the net is its own mirror image and has a node at the headrope's centre.
+The codend is one line: its meshes are too small for rows, and their drag is lumped at its nodes.
 """
 
 from functools import lru_cache
@@ -27,11 +27,11 @@ from trawl_ros.model.net.planned_mouth import Place, PlannedMouth
 from trawl_ros.model.net.rows import NettingRow, Profile, rows_of
 from trawl_ros.model.net.weave import NetMesh, add_codend, weave
 
-NETS = 4
-"""So many nets are kept: gears that differ in their rigging alone have the same one."""
+CACHED_NETS = 4
+"""Number of nets kept; gears that differ only in their rigging share one."""
 
 
-@lru_cache(NETS)
+@lru_cache(CACHED_NETS)
 def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
     """Group the netting of a gear into nodes and bars.
 
@@ -98,7 +98,7 @@ def build_net(net: NettingRecord, kite_chord: float | None) -> NetMesh:
 def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | None) -> NetMesh:
     """Group the netting of a plan; see `PlannedMouth` and `PlannedCloth`.
 
-    Square meshes keep their width: from the first section of them on the net is one line.
+    Square meshes keep their width, so the net is one line from their first section on.
     """
     mouth = PlannedMouth(plan, net.around)
     cloth = PlannedCloth(net, mouth)
@@ -140,7 +140,8 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | No
         kite = _kite_nodes(rows, made.index, kite_chord)
         if headrope[len(headrope) // 2] != kite.nodes[0]:
             raise GearError(
-                'kite: found beside an upper panel that reaches ahead of the mouth, expected one'
+                'kite: found with an upper panel that reaches ahead of the mouth, expected a panel '
+                'that ends at the mouth, or no kite'
             )
     return NetMesh(
         positions=np.array(made.positions),
@@ -167,8 +168,9 @@ def _planned_net(net: NettingRecord, plan: NetPlanRecord, kite_chord: float | No
 def _kite_nodes(
     rows: tuple[NettingRow, ...], index: dict[tuple[int, int], int], chord: float
 ) -> KiteNodes:
-    """The headrope's centre, and a point ``chord`` (m, stretched) behind it between the nodes
-    that lie along the top.
+    """Return the headrope's centre and a point ``chord`` (m, stretched) behind it.
+
+    The latter lies between two nodes along the top.
     """
     top = [k for k, row in enumerate(rows) if not row.odd]
     places = np.array([rows[k].front for k in top])
@@ -180,15 +182,15 @@ def _kite_nodes(
 
 
 def _angle_index(row: int, j: int) -> int:
-    """Angle from the top in half pitches, so that it is whole on every row."""
+    """Return the angle from the top in half pitches, which is an integer on every row."""
     return 2 * j + row % 2
 
 
 def _in_wing(row: int, j: int, n: int, wing_rows: int) -> bool:
     """Return True for a node ahead of the mouth that belongs to a wing.
 
-    All bars are cut, so each row is narrower by half a pitch at either edge; the base spans
-    30° about the side, in 12ths.
+    Wings are cut along the bars, so each row is narrower by half a pitch at either edge. The base
+    spans 30° about the side, a twelfth of the circumference.
     """
     half = _angle_index(row, j) % (2 * n)
     reach = 2 * wing_rows + row
@@ -196,7 +198,7 @@ def _in_wing(row: int, j: int, n: int, wing_rows: int) -> bool:
 
 
 def _on_edge(row: int, j: int, other: int, n: int, wing_rows: int) -> bool:
-    """True if the bar from (row, j) to (row + 1, other) lies along the cut edge of a wing."""
+    """Return True if the bar from (row, j) to (row + 1, other) lies on the cut edge of a wing."""
     if row >= 0:
         return False
     half, next_half = _angle_index(row, j) % (2 * n), _angle_index(row + 1, other) % (2 * n)
@@ -207,7 +209,7 @@ def _on_edge(row: int, j: int, other: int, n: int, wing_rows: int) -> bool:
 
 
 def _rim(index: dict[tuple[int, int], int], n: int, wing_rows: int, middle: int) -> list[int]:
-    """Nodes of head- or footrope, from the port wing tip over ``middle`` to starboard."""
+    """Return the nodes of headrope or footrope, from port over ``middle`` to starboard."""
     toward = 1 if middle == 0 else -1
     base = n // 4 - wing_rows
     port: list[int] = []
@@ -226,7 +228,7 @@ def _rim(index: dict[tuple[int, int], int], n: int, wing_rows: int, middle: int)
 
 
 def _wing_ends(index: dict[tuple[int, int], int], n: int, wing_rows: int) -> list[list[int]]:
-    """Nodes of both wing ends, from the top down, port first."""
+    """Return the nodes of both wing ends, from the top down, port first."""
     row = -wing_rows
     ends = []
     for side in (n // 2, 3 * n // 2):

@@ -1,4 +1,4 @@
-"""The netting of a planned net: what hangs at a place of it, panel by panel."""
+"""Netting of a planned net at each place of it, panel by panel."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,38 +14,38 @@ from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.model.net.planned_mouth import PlannedMouth
 from trawl_ros.model.net.rows import NettingRow, Profile
 
-SEA = 1025.0
-"""Density (kg/m³) of the water in the twines."""
+SEA_DENSITY_KG_M3 = 1025.0
+"""Density of the water in the twines."""
 
-WIDEST = np.radians(80.0)
-"""Angle of bars beyond which knots do not keep them."""
+MAX_BAR_ANGLE_RAD = np.radians(80.0)
+"""Greatest angle at which knots hold the bars."""
 
-LEAST_SHARE = 0.3
-"""Part of its column that a bar at the edge of a wing has at least, so that it can bear a load."""
+LEAST_COLUMN_FRACTION = 0.3
+"""Least part of its column that a bar at the edge of a wing has, so that it can bear a load."""
 
 PANELS = ('upper', 'side_upper', 'side_lower', 'lower')
 """Panels from the top to the bottom; a side that is one piece is the upper of both."""
 
 
 def mesh_angle(piece: PieceRecord, net: NettingRecord) -> float:
-    """Angle (rad) of the bars of a piece against the flow, where they lie as in a codend.
+    """Return the angle (rad) of the bars of a piece against the flow, as in a codend.
 
-    Of meshes turned by 90° the knots lie across, as a third pair of sides of hexagons (Priour 2014,
-    doi 10.1016/j.oceaneng.2014.09.037), and keep the bars apart: with knots k of a mesh m long its
-    width is m sin θ - 2k sin θ + 2k. Without knots nothing changes.
+    The knots of meshes turned by 90° lie across the flow and keep the bars apart: they are the
+    third pair of sides of hexagons (Priour 2014, doi 10.1016/j.oceaneng.2014.09.037). A mesh of
+    length m with knots of length k is m sin θ - 2k sin θ + 2k wide. Knotless meshes do not change.
     """
     angle = float(np.radians(net.codend_mesh_angle_deg))
     if piece.orientation != 'T90' or piece.knots == 'knotless':
         return angle
     knots = min(2 * net.knot_diameters * piece.twine.diameter / piece.mesh, 1.0)
     sine = np.sin(angle) + knots * (1.0 - np.sin(angle))
-    return float(min(np.arcsin(sine), WIDEST))
+    return float(min(np.arcsin(sine), MAX_BAR_ANGLE_RAD))
 
 
 def section_of(
     piece: PieceRecord, net: NettingRecord, length: float, front: float, back: float
 ) -> SectionRecord:
-    """A piece as a section all around of this length (m) and these circumferences (m)."""
+    """Return a piece as a section of the whole circumference, with its dimensions in m."""
     twine = piece.twine
     name = piece.section or piece.part
     angle = float(np.degrees(mesh_angle(piece, net))) if piece.orientation == 'T90' else None
@@ -57,7 +57,7 @@ def section_of(
         'back_circumference_m': max(back, 1e-6),
         'mesh_m': piece.mesh,
         'twine_diameter_m': twine.diameter,
-        'twine_density_kg_m3': twine.density(SEA),
+        'twine_density_kg_m3': twine.density(SEA_DENSITY_KG_M3),
         'twine_modulus_pa': twine.fibre.modulus,
         'twines': piece.twines,
         'knotless': piece.knots == 'knotless' or piece.orientation == 'ropes',
@@ -70,7 +70,7 @@ def section_of(
 
 
 def sections_of(net: NettingRecord, plan: NetPlanRecord, part: Part, panel: str) -> Profile:
-    """Profile of a part of the net, as if it were this panel's netting all around."""
+    """Return the profile of a part of the net, as if all of it had this panel's netting."""
     sections = []
     for _, pieces in plan.sections(part):
         front, back = (sum(p.count * p.widths[edge] for p in pieces) for edge in (0, 1))
@@ -91,7 +91,7 @@ class PlannedCloth:
 
     @property
     def plan(self) -> NetPlanRecord:
-        """The plan."""
+        """Plan of the net."""
         return self.mouth.plan
 
     @cached_property
@@ -115,16 +115,16 @@ class PlannedCloth:
         return found
 
     def bounds(self, x: float) -> tuple[float, float, float]:
-        """Ends of the upper panel and of both parts of the side at a distance (m) behind the mouth,
-        as parts of the circumference from the top.
+        """Return where the upper panel and both parts of the side end, at ``x`` m behind the mouth.
 
-        A side that is one piece is all of it the upper part.
+        They are parts of the circumference from the top. A side in one piece has an upper part
+        only.
         """
         upper, lower, share = self._sides(x)
         return upper, lower if share == 1.0 else upper + share * (lower - upper), lower
 
     def _sides(self, x: float) -> tuple[float, float, float]:
-        """Ends of the upper panel and of the side, and the part of it that is its upper panel."""
+        """Return the ends of upper panel and side, and the part of the side in its upper panel."""
         if x <= 0.0:
             upper, lower = self.mouth.seams
             around, side = 2 * self.mouth.around, self.plan.mouth_width('side')
@@ -143,7 +143,7 @@ class PlannedCloth:
         raise AssertionError
 
     def _last_sides(self, number: int) -> tuple[float, float, float]:
-        """The same at the end of the last section ahead of one that is not in panels."""
+        """Return `_sides` at the end of the last section with panels, up to ``number``."""
         for _, pieces in self.plan.sections('body')[number::-1]:
             width = {p.panel: p.widths[1] for p in pieces}
             if 'all' not in width:
@@ -151,15 +151,16 @@ class PlannedCloth:
         return 0.25, 0.25, 1.0
 
     def sums(self, row: NettingRow, middle: float) -> dict[str, float]:
-        """Sums of `Profile.per_mesh_column` for the bar of a row whose middle lies at this part of
-        the circumference from the top.
+        """Return the sums of `Profile.per_mesh_column` for a bar of a row.
+
+        Its middle lies at the part ``middle`` of the circumference from the top.
         """
         width = 1.0 / (row.around if row.joins or row.straight else 2 * row.around)
         place = min(middle % 1.0, 1.0 - middle % 1.0)
         x = 0.5 * (row.front + row.back)
         upper, middle_of_side, lower = self.bounds(x)
         low, high = place - 0.5 * width, place + 0.5 * width
-        # Beyond the top and the bottom it is the same panel again.
+        # The same panel continues beyond the top and the bottom.
         edges = -1.0, upper, middle_of_side, lower, 2.0
         cuts = dict(zip(PANELS, pairwise(edges), strict=True))
         shares = {
@@ -169,7 +170,7 @@ class PlannedCloth:
         if row.back <= 1e-9:
             wing = self.mouth.wing_at(2 * self.mouth.around * place)
             inside = self._inside(row, low, high)
-            scale = max(inside, LEAST_SHARE) / max(sum(shares.values()), 1e-12)
+            scale = max(inside, LEAST_COLUMN_FRACTION) / max(sum(shares.values()), 1e-12)
             shares = {panel: scale * share for panel, share in shares.items()}
         else:
             wing = 0
@@ -181,7 +182,7 @@ class PlannedCloth:
         return total
 
     def _inside(self, row: NettingRow, low: float, high: float) -> float:
-        """Part of [low, high] of the circumference that wings cover in the middle of a row."""
+        """Return the part of [low, high] that wings cover in the middle of a row."""
         mouth, k = self.mouth, 0.5 * (row.front + row.back) / self.mouth.row
         whole, covered = 2 * mouth.around, 0.0
         for seam, rows, panels in (
@@ -191,7 +192,7 @@ class PlannedCloth:
             if -k <= rows:
                 start = (seam - mouth.reach(panels[0], k)) / whole
                 end = (seam + mouth.reach(panels[1], k)) / whole
-                # A wing that reaches the middle of its panel goes on behind it.
+                # A wing that reaches the middle of its panel continues beyond it.
                 start, end = (-1.0 if start <= 0.0 else start), (2.0 if end >= 0.5 else end)
                 covered += max(min(high, end) - max(low, start), 0.0)
         return min(covered / (high - low), 1.0)
@@ -209,8 +210,9 @@ class PlannedCloth:
 
 
 def _sides_of(width: Mapping[Panel, float], whole: float) -> tuple[float, float, float]:
-    """Ends of the upper panel and of the side as parts of the whole circumference, and the part of
-    the side that is its upper panel.
+    """Return the ends of upper panel and side, and the part of the side in its upper panel.
+
+    The ends are parts of the whole circumference.
     """
     upper, lower = 0.5 * width['upper'] / whole, 0.5 - 0.5 * width['lower'] / whole
     own = width.get('side_upper')

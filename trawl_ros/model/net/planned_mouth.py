@@ -1,9 +1,9 @@
-"""The mouth of a planned net: which nodes ahead of it belong to wings, and its frame of ropes.
+"""Mouth of a planned net: the nodes of its wings ahead of it, and its frame of ropes.
 
-Nodes lie at whole angles of half a pitch from the top, ``half`` in 0 … 2 ``around``, even ones on
-even rows. Rows are counted from the mouth, negative ones ahead of it. Everything is said for port;
-starboard is its mirror image. A wing is what a panel's wing has beside its seam: from the upper
-seam inward to the headrope's bosom and outward to the side's, and likewise from the lower one.
+The angle of a node from the top is an integer number of half pitches, ``half`` in 0 … 2 ``around``,
+even on even rows. Rows are counted from the mouth; those ahead of it are negative. Everything is
+given for port; starboard is its mirror image. A wing is the netting on both sides of a seam: from
+the upper seam inward to the headrope's bosom and outward to the side's, likewise from the lower.
 """
 
 from dataclasses import dataclass
@@ -22,8 +22,10 @@ Place = tuple[int, int]
 
 @dataclass(frozen=True)
 class FrameRope:
-    """Rope along a rim of the net: the ``places`` of its nodes, and of each stretch between two of
-    them the stretched netting (m) beside it and its kind (``edge``, ``bosom`` or ``tip``).
+    """Rope along a rim of the net.
+
+    ``places`` are those of its nodes. Each stretch between two nodes has the stretched ``netting``
+    (m) along it and one of ``kinds``: ``edge``, ``bosom`` or ``tip``.
     """
 
     places: tuple[Place, ...]
@@ -31,11 +33,10 @@ class FrameRope:
     kinds: tuple[str, ...]
 
     def rests(self, plan: NetPlanRecord, length: float | None, name: str) -> FloatArray:
-        """Rest lengths (n - 1,) of the stretches of a rope that is ``length`` m long, or as long as
-        the hanging ratios make it.
+        """Return the rest lengths (n - 1,) of the stretches of a rope ``length`` m long.
 
-        Bosom and tips have the rope of the plan however they are cut into stretches, wing edges the
-        rest.
+        Without a length the hanging ratios determine it. Bosom and tips have the length of the
+        plan for any number of stretches; wing edges have the remainder.
 
         Raises
         ------
@@ -91,19 +92,17 @@ class PlannedMouth:
 
     @cached_property
     def scales(self) -> tuple[float, float]:
-        """Rows of the upper and of the lower wings over those of the mouth, so that the wings are
-        as long as planned.
-        """
+        """Row lengths of the upper and lower wings, over ``row``, that give the planned lengths."""
         long = (self.plan.wing_length(panel) for panel in ('upper', 'lower'))
         upper, lower = (length / (rows * self.row) for length, rows in zip(long, self.rows))
         return upper, lower
 
     def wing_at(self, half: float) -> int:
-        """0 for the upper and 1 for the lower wing, of half pitches from the top."""
+        """Return 0 for the upper and 1 for the lower wing at these half pitches from the top."""
         return int(min(half, 2 * self.around - half) > 0.5 * sum(self.seams))
 
     def row_at(self, half: float) -> float:
-        """Stretched length (m) of a row ahead of the mouth at these half pitches from the top."""
+        """Return the stretched length (m) of a row ahead of the mouth at these half pitches."""
         return self.row * self.scales[self.wing_at(half)]
 
     @property
@@ -112,7 +111,7 @@ class PlannedMouth:
         return max(self.rows)
 
     def reach(self, panel: str, k: float) -> float:
-        """Half pitches that the wing of a panel has beside its seam on row ``k`` < 0."""
+        """Return the width of a panel's wing from its seam on row ``k`` < 0, in half pitches."""
         pieces = self.plan.wing(panel) or self._side(panel)
         ahead = (-k) * self.row * self.scales[panel in ('lower', 'side_lower')]
         whole = 2 * self.around / self.plan.circumference
@@ -137,9 +136,10 @@ class PlannedMouth:
 
     @cached_property
     def edges(self) -> dict[int, tuple[int, int, int, int]]:
-        """Of each row ahead of the mouth the half pitches of the first and last node of the upper
-        and of the lower wing, from the top down; a wing that does not reach it has its first
-        behind its last. Adjoining wings leave no gap.
+        """First and last node of the upper and of the lower wing, for each row ahead of the mouth.
+
+        They are half pitches, from the top down. A wing that does not reach the row has its first
+        node behind its last. Adjoining wings leave no gap.
         """
         found: dict[int, tuple[int, int, int, int]] = {}
         upper, lower = self.seams
@@ -159,14 +159,15 @@ class PlannedMouth:
         return found
 
     def _gap_half(self, panel: str, k: int) -> float:
-        """Half pitches from the middle of the upper or lower panel to its wing on row ``k``."""
+        """Return the half pitches from the middle of a panel to its wing on row ``k``."""
         upper, lower = self.seams
         half = upper if panel == 'upper' else self.around - lower
         return half - self.reach(panel, k)
 
     def _closed(self, panel: str) -> int:
-        """Foremost row on which, and behind which, a panel is whole; an even one, so that a node
-        lies in its middle.
+        """Return the foremost row from which on aft a panel is whole.
+
+        It is even, so that a node lies in the middle of the panel.
         """
         k = 0
         while -k < self.foremost and self._gap_half(panel, k - 1) <= 1.0:
@@ -174,21 +175,22 @@ class PlannedMouth:
         return k + k % 2
 
     def _inner(self, panel: str, k: int, closed: int) -> int:
-        """Half pitches from the middle of a panel to the first node of its wing."""
+        """Return the half pitches from the middle of a panel to the first node of its wing."""
         if k >= closed:
             return k % 2
         return max(_near(self._gap_half(panel, k), k), 2 + k % 2)
 
     @property
     def corner(self) -> int:
-        """Half pitches from the middle of the upper panel to the corner at the mouth between the
-        wing's inner edge and the bosom; of the lower panel where the upper one has no bosom.
+        """Half pitches from the middle of the upper panel to the corner of wing and bosom.
+
+        They are those of the lower panel if the upper one has no bosom.
         """
         top, _, _, bottom = self.edges[-1]
         return (top - 1) or (self.around - bottom - 1)
 
     def holds(self, k: int, half: int) -> bool:
-        """True for a node that belongs to the net."""
+        """Return True for a node that belongs to the net."""
         if k >= 0:
             return True
         if k not in self.edges:
@@ -199,8 +201,9 @@ class PlannedMouth:
 
     @property
     def tips(self) -> tuple[Place, Place]:
-        """Nodes of the port wing tips to which bridles are shackled: on the seam where the side is
-        cut out, else at the ends of headrope and footrope.
+        """Nodes of the port wing tips to which bridles are shackled.
+
+        They lie on the seams if the side is cut out, else at the ends of headrope and footrope.
         """
         places = []
         for which in (0, 1):
@@ -215,16 +218,16 @@ class PlannedMouth:
 
     @property
     def open_side(self) -> bool:
-        """True where the side is cut out between upper and lower wing."""
+        """True if the side is cut out between upper and lower wing."""
         shorter = self.edges[-min(self.rows)]
         return shorter[2] - shorter[1] > 2
 
     def headrope(self) -> FrameRope:
-        """Headrope from the port wing tip to the starboard one."""
+        """Return the headrope from the port wing tip to the starboard one."""
         return self._across(0)
 
     def footrope(self) -> FrameRope:
-        """Footrope from the port wing tip to the starboard one."""
+        """Return the footrope from the port wing tip to the starboard one."""
         return self._across(1)
 
     def _across(self, which: int) -> FrameRope:
@@ -241,7 +244,7 @@ class PlannedMouth:
         return self._rope(places, tips=ahead)
 
     def _gap(self, which: int) -> list[int]:
-        """Half pitches of the inner edge of a wing, row by row from its tip to the mouth."""
+        """Return the half pitches of a wing's inner edge, row by row from its tip to the mouth."""
         rows = range(-self.rows[which], 0)
         middle = self.around if which else 0
         edge = [self.edges[k][3 * which] for k in rows]
@@ -249,15 +252,17 @@ class PlannedMouth:
         return [*edge[:closed], middle]
 
     def side_rope(self) -> FrameRope:
-        """Rope from the upper to the lower wing tip at port; the line of the wing end where the
-        side is not cut out.
+        """Return the rope from the upper to the lower wing tip at port.
+
+        It is the line of the wing end if the side is not cut out.
         """
         (k_up, up), (k_low, low) = self.tips
         if not self.open_side:
             if k_up != k_low:
                 raise GearError(
-                    'netting.plan: wings of different length on a side that is not cut out, '
-                    'expected side_upper and side_lower wings, or upper and lower wings alike'
+                    'netting.plan: found wings of different length on a side that is not cut out, '
+                    'expected side_upper and side_lower wings, or upper and lower wings of one '
+                    'length'
                 )
             places = [(k_up, half) for half in range(up, low + 1, 2)]
             return self._rope(places, tips=len(places))
@@ -284,7 +289,7 @@ class PlannedMouth:
         return FrameRope(rope.places, rope.netting, tuple(kinds))
 
     def _rope(self, places: list[Place], tips: int) -> FrameRope:
-        """Rope over places, whose first and last ``tips`` stretches are those of the wing tips."""
+        """Return the rope over places; its first and last ``tips`` stretches are the wing tips."""
         netting, kinds = [], []
         for number, ((k, h), (row, half)) in enumerate(pairwise(places)):
             rows, across = abs(row - k), min(abs(half - h), 2 * self.around - abs(half - h))
@@ -296,16 +301,16 @@ class PlannedMouth:
 
 
 def _near(half: float, row: int) -> int:
-    """The nearest half pitch at which a row has a node."""
+    """Return the nearest half pitch at which a row has a node."""
     odd = row % 2
     return 2 * round((half - odd) / 2) + odd
 
 
 def _down(k: int, edge: list[int]) -> list[Place]:
-    """Places along an edge behind its first row ``k``, as its half pitches fall toward the mouth.
+    """Return the places along an edge behind its first row ``k``, toward the mouth.
 
-    A rope runs over what sticks out: nodes that have no netting ahead of them, and none that lie
-    in a notch.
+    Half pitches fall toward the mouth. The rope runs over the nodes without netting ahead of them,
+    and passes over notches.
     """
     places: list[Place] = []
     for n in range(1, len(edge)):

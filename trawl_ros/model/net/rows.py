@@ -1,4 +1,4 @@
-"""Netting along its length: the profile of the real one, and the rows of bars grouped from it."""
+"""Netting along its length: the profile of the real netting, and the rows of grouped bars."""
 
 from bisect import bisect_right
 from collections.abc import Iterator
@@ -13,16 +13,16 @@ from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.model.net.wake import bar_angle, exposure, viscous
 
 LEAST_ROWS = 3
-"""So that the top has two nodes for the kite's carrying points."""
+"""Least number of rows, so that the top has two nodes for the kite's carrying points."""
 
 
 @dataclass(frozen=True)
 class NettingRow:
-    """A row of bars over the stretched distances ``front`` to ``back`` (m) from the mouth.
+    """Row of bars over the stretched distances ``front`` to ``back`` (m) from the mouth.
 
-    ``around`` nodes are on its front edge, those of an odd edge (``odd``) half a pitch further
-    than the top. With ``joins`` each two of them are tied to one of the ``around / 2`` nodes of
-    the back edge. Those of a ``straight`` row are tied to the one behind them, by a single bar.
+    Its front edge has ``around`` nodes; those of an odd edge (``odd``) begin half a pitch from the
+    top. If it ``joins`` meshes, two of them at a time are tied to one of the ``around / 2`` nodes
+    of the back edge. A ``straight`` row ties each node to the one behind it by a single bar.
     """
 
     front: float
@@ -44,8 +44,9 @@ class NettingRow:
 
 
 class Profile:
-    """Real netting as functions of the stretched distance from the mouth, or that of a codend,
-    which is ``closed`` behind.
+    """Real netting as functions of the stretched distance from its front.
+
+    Sections are those of a body, or of a codend, which is ``closed`` behind.
     """
 
     def __init__(
@@ -62,7 +63,7 @@ class Profile:
         return self.edges[-1]
 
     def at(self, x: float) -> tuple[SectionRecord, float]:
-        """Section at ``x`` and its stretched circumference there."""
+        """Return the section at ``x`` and its stretched circumference there."""
         k = min(max(bisect_right(self.edges, x) - 1, 0), len(self.sections) - 1)
         s = self.sections[k]
         share = max(x - self.edges[k], 0.0) / s.length_m
@@ -71,13 +72,13 @@ class Profile:
         )
 
     def per_mesh_column(self, front: float, back: float, around: int) -> dict[str, float]:
-        """Sums over [front, back] per bar, for two bars in each of ``around`` meshes.
+        """Return sums over [front, back] per bar, for two bars in each of ``around`` meshes.
 
-        Netting ahead of the mouth is taken to be like that at the mouth. All sums are linear in
-        the circumference, so the middle of a section's piece gives them exactly.
+        Netting ahead of the mouth is taken to be the same as at the mouth. All sums are linear in
+        the circumference, so the value at the middle of each piece is exact.
         """
         sums = 'area', 'width', 'volume', 'mass', 'stiffness', 'knots', 'knot_volume'
-        # Of the area what is left of the drag of single twines across them, and along.
+        # The last four are weighted by the exposure of the sheet.
         total = dict.fromkeys((*sums, 'normal', 'sliding', 'lift', 'knot_root'), 0.0)
         for section, parallel, dx in self._pieces(front, back, around):
             left, d = self._exposures[id(section)], section.twine_diameter_m
@@ -101,8 +102,9 @@ class Profile:
     def _pieces(
         self, front: float, back: float, around: int
     ) -> Iterator[tuple[SectionRecord, float, float]]:
-        """Sections of [front, back], each with the mean number of its bars that lie side by side,
-        and its length (m).
+        """Yield the sections of [front, back], each with its bars side by side and its length (m).
+
+        The number of bars is the mean over the length.
         """
         cuts = [front, *(edge for edge in self.edges if front < edge < back), back]
         for start, end in pairwise(cuts):
@@ -112,8 +114,9 @@ class Profile:
             yield section, circumference / section.mesh_m / around * bars, end - start
 
     def line_drag(self, front: float, back: float) -> tuple[float, float]:
-        """Drag area C_D S (m²) of the twines over [front, back] as they lie in the flow, and its
-        viscous part (m² √(m/s)), both as `lump_pass` has them.
+        """Return drag area C_D S (m²) of the twines over [front, back], and its viscous part.
+
+        The latter is in m² √(m/s). Both are those of `lump_pass`, for bars at the mesh angle.
         """
         net, area, viscous_area = self.net, 0.0, 0.0
         for section, parallel, dx in self._pieces(front, back, 1):
@@ -136,27 +139,27 @@ class Profile:
 def rows_of(
     profile: Profile, around: int, halved_at: tuple[float, ...], corner: int
 ) -> tuple[NettingRow, ...]:
-    """Rows as long as makes ``around`` meshes as wide as the real ones.
+    """Return rows whose lengths make ``around`` meshes as wide as the real ones.
 
-    The last row ends where the body does and is half as long to one and a half times as long.
+    The last row ends with the body and has 0.5 to 1.5 times its regular length.
 
     Parameters
     ----------
     profile
-        Of the body.
+        Profile of the body.
     around
         Numerical meshes around the mouth.
     halved_at
         Stretched circumferences (m), falling, below which half as many meshes go around.
     corner
         Half pitches from the middle of the upper or lower panel to the corner between wing and
-        bosom. There the frame rope leaves much of its tension to one line of bars. Of two such
-        lines one ends where meshes are joined, so they are joined where this one does not.
+        bosom. There the frame rope transfers much of its tension to one line of bars. Joining
+        meshes ends every second line, so they are joined on rows where this line continues.
 
     Raises
     ------
     GearError
-        If they have more nodes than `GEAR_NODES` allows, or there are too few to carry a kite.
+        If there are more nodes than `GEAR_NODES` allows, or too few rows to carry a kite.
     """
     rows = _of_ropes(profile, around)
     ropes, nodes = len(rows), around * len(rows)
@@ -171,7 +174,7 @@ def rows_of(
         if nodes > GEAR_NODES.value:
             raise _too_fine(profile, end - x)
         due = bool(pending) and circumference <= pending[0] and around % 2 == 0
-        # Nodes with an even number (here ``line // 2``) go on toward the middle, as the line does.
+        # Lines of nodes with an even number (here ``line // 2``) continue.
         joins = due and line % 4 == 1 and not last
         rows.append(NettingRow(x, profile.length if last else end, around, odd, joins))
         x, line, odd = rows[-1].back, line - 1, not odd
@@ -182,13 +185,13 @@ def rows_of(
         behind = profile.length - (rows[ropes - 1].back if ropes else 0.0)
         raise GearError(
             f'netting.body: found {len(rows) - ropes} rows of the mesh in {behind:g} m of netting, '
-            f'expected at least {LEAST_ROWS}: more meshes around or more netting'
+            f'expected at least {LEAST_ROWS}; use more meshes around or a longer body'
         )
     return tuple(rows)
 
 
 def _of_ropes(profile: Profile, around: int) -> list[NettingRow]:
-    """Rows of the ropes ahead of the netting, each about as long as one of netting would be."""
+    """Return the rows of ropes ahead of the netting, about as long as rows of netting."""
     rows: list[NettingRow] = []
     for section, front, back in zip(profile.sections, profile.edges, profile.edges[1:]):
         if not section.ropes:
@@ -207,6 +210,6 @@ def _of_ropes(profile: Profile, around: int) -> list[NettingRow]:
 
 def _too_fine(profile: Profile, row: float) -> GearError:
     return GearError(
-        f'netting.body: {profile.length:g} m in rows of {row:g} m have more than {GEAR_NODES}, '
-        'expected fewer meshes around or less netting'
+        f'netting.body: found more than {GEAR_NODES} in {profile.length:g} m with rows of '
+        f'{row:g} m, expected fewer meshes around or a shorter body'
     )

@@ -1,4 +1,4 @@
-"""Sheets of a net: the netting around each node, for the lift that comes of its solidity."""
+"""Sheets of a net: the netting around each node, for the lift by its solidity."""
 
 from dataclasses import dataclass
 
@@ -15,11 +15,11 @@ class NetSheets:
     Attributes
     ----------
     around : (n, 5) array
-        Node that each belongs to, and the nodes tied to it; itself again where there are fewer.
+        Own node of each sheet, and the nodes tied to it; filled up with the own node.
     weights : (n, 2, 5) array
-        Weights of their places in both sides of `trawl_ros.model.lump_pass`.
+        Weights of their positions in both sides d₁, d₂ of `trawl_ros.model.lump_pass`.
     lift, twine : (n,) array
-        Coefficient κ there, and the area of twine, m².
+        Coefficient κ and area of twine, m².
     """
 
     around: IntArray
@@ -29,7 +29,7 @@ class NetSheets:
 
 
 def sheets_of(bars: list[NetBar], positions: FloatArray) -> NetSheets:
-    """Sheets at all nodes with two bars of netting side by side, ahead of them or behind."""
+    """Return the sheets at all nodes with two bars of netting side by side, ahead or behind."""
     ahead: dict[int, list[int]] = {}
     behind: dict[int, list[int]] = {}
     lift: dict[int, list[float]] = {}
@@ -55,7 +55,7 @@ def sheets_of(bars: list[NetBar], positions: FloatArray) -> NetSheets:
         for there, sign in zip(sides, (-1.0, 1.0), strict=True):
             for k in there or [node]:
                 long[k] += sign / max(len(there), 1)
-        # A node has half of the area between those tied to it.
+        # A node has half of the area between the nodes tied to it.
         for left, right in pairs:
             wide[left] = -0.5 / len(pairs)
             wide[right] = 0.5 / len(pairs)

@@ -1,4 +1,4 @@
-"""Nodes and bars of a net, row by row: what any outline of the mouth and any netting share."""
+"""Nodes and bars of a net, row by row, for any outline of the mouth and any netting."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,9 +14,10 @@ from trawl_ros.model.net.rows import NettingRow, Profile
 
 @dataclass(frozen=True)
 class NetBar:
-    """A numerical bar between two net nodes, with the properties of `line.BarProperties`;
-    ``normal`` and ``sliding`` are the parts of its area that single twines with as much drag have,
-    across them and along, ``diameter`` (m) is that of its twine, and ``lift`` the κ of its sheet.
+    """Numerical bar between two nodes of the net, with the properties of `line.BarProperties`.
+
+    ``normal`` and ``sliding`` are the parts of its area that single twines of the same drag have,
+    across them and along; ``diameter`` (m) is that of its twine, ``lift`` the κ of its sheet.
     """
 
     start: int
@@ -38,15 +39,30 @@ class NetBar:
 class NetMesh:
     """Nodes and bars of the net.
 
-    ``positions`` (n, 3) is a first guess, x forward from the wing tips, y to port, z up; ``bars``
-    its netting; ``knot_area`` (m²), ``knot_root`` (m^1.5, the area over the root of the diameter)
-    and ``knot_volume`` (m³) per node; ``line_drag_area`` C_D S (m²) of the codend's nodes and
-    ``line_viscous_area`` its viscous part (m² √(m/s)); ``headrope`` and ``footrope`` the nodes from
-    port to starboard wing tip, ``edge_rest`` the length of a bar of a wing's edge; ``wing_ends``
-    the nodes joined by the wing-end lines or side ropes, from the top down; ``kite`` what carries
-    the kite; ``tips`` the nodes that bridles are shackled to: port upper and lower, starboard upper
-    and lower; ``knot_density`` the density of knots (kg/m³); ``frame`` headrope, footrope and side
-    rope of a planned net.
+    Attributes
+    ----------
+    positions : (n, 3) array
+        First guess, x forward from the wing tips, y to port, z up, m.
+    bars
+        Bars of the netting.
+    knot_area, knot_root, knot_volume : (n,) arrays
+        Area of knots (m²), the area over the root of their diameter (m^1.5), and volume (m³).
+    line_drag_area, line_viscous_area : (n,) arrays
+        C_D S (m²) of the codend's nodes, and its viscous part (m² √(m/s)).
+    headrope, footrope
+        Nodes from the port to the starboard wing tip.
+    edge_rest
+        Length of a bar of a wing's edge, m.
+    wing_ends
+        Nodes joined by the wing-end lines or side ropes, from the top down.
+    kite
+        Nodes that carry the kite.
+    tips
+        Nodes to which bridles are shackled: port upper and lower, starboard upper and lower.
+    knot_density
+        Density of knots, kg/m³.
+    frame
+        Headrope, footrope and side rope of a planned net.
     """
 
     positions: FloatArray
@@ -68,8 +84,9 @@ class NetMesh:
 
 @dataclass
 class Weave:
-    """Net while it is made: the ``index`` of its nodes by row and number around, their
-    ``positions``, its ``bars``, and per node the area (m²) and volume (m³) of its knots.
+    """Net under construction.
+
+    ``index`` has its nodes by row and number around. Arrays are per node, as in `NetMesh`.
     """
 
     index: dict[tuple[int, int], int] = field(default_factory=dict)
@@ -91,23 +108,22 @@ def weave(
     sums: Callable[[int, NettingRow, int, int], dict[str, float]],
     rest: Callable[[int, NettingRow, int], float] = lambda _, row, __: row.rest,
 ) -> Weave:
-    """Make nodes and bars of the wings' rows and the body's.
+    """Make the nodes and bars of the rows of wings and body.
 
     Parameters
     ----------
     net
         Constants of knots and bars.
     body
-        Profile whose circumferences give the places.
+        Profile whose circumferences determine the first guess of positions.
     wings, rows
         Rows ahead of the mouth, which have negative numbers, and behind it.
     holds
         True for a node (row, number around) ahead of the mouth that belongs to the net.
     sums
-        Twine of the bar of a row from one number around to another, as
-        `Profile.per_mesh_column` has it.
+        Sums of `Profile.per_mesh_column` for the bar of a row from one number around to another.
     rest
-        Length of the bars of a row from a number around; that of the row unless given.
+        Length of the bars of a row at a number around; that of the row by default.
     """
     made = Weave()
     ahead = wings[0].front if wings else 0.0
@@ -155,7 +171,7 @@ def weave(
 def _bar(
     a: int, b: int, rest: float, sums: dict[str, float], pressure: float, group: str
 ) -> NetBar:
-    # Netting of hardly any circumference has no twine.
+    # Netting of almost no circumference has no twine.
     area = max(sums['area'], 1e-12)
     sag = pressure * sums['width'] * rest / sums['stiffness'] if sums['stiffness'] else 0.0
     return NetBar(
@@ -176,7 +192,7 @@ def _bar(
 
 
 def _behind(row: NettingRow, j: int) -> tuple[int, ...]:
-    """Nodes of the back edge that the bars of node ``j`` of the front edge go to."""
+    """Return the nodes of the back edge that are tied to node ``j`` of the front edge."""
     if row.straight:
         return (j,)
     if row.joins:
@@ -185,7 +201,7 @@ def _behind(row: NettingRow, j: int) -> tuple[int, ...]:
 
 
 def add_codend(net: NettingRecord, codend: Profile, ring: list[int], made: Weave) -> None:
-    """One line behind the last whole row, whose nodes are all tied to its first node."""
+    """Add the codend, one line whose first node is tied to all nodes of the last row."""
     m = net.codend_segments
     step = codend.length / m
     tail = made.positions[ring[0]][0]

@@ -1,8 +1,9 @@
 """Derivatives of warp forces and of M a along directions of positions and towing boundary.
 
-Forces by positions and velocities are `trawl_ros.model.assembly.linearised`; here is the rest that
-the derivative of a time step needs. Ropes at blocks and boards are few, so they are taken by the
-complex step, for all directions in one pass; the net's bars analytically, on the model's pattern.
+`trawl_ros.model.assembly.linearised` has the derivatives of forces by positions and velocities;
+this module has the others that the derivative of a time step needs. Ropes at blocks and boards are
+few, so they are differentiated by the complex step, for all directions in one pass. The net's bars
+are differentiated analytically, on the model's pattern.
 """
 
 from dataclasses import dataclass
@@ -16,17 +17,20 @@ from trawl_ros.model.board import world_inertia
 from trawl_ros.model.compiled import as_kind
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.numerics import transpose
-from trawl_ros.model.slopes.inertia_pass import add_bar_inertia_slopes
-from trawl_ros.model.slopes.rigging_pass import add_warp_forces, subtract_inertia
+from trawl_ros.model.slopes.passes import (
+    add_bar_inertia_slopes,
+    add_warp_forces,
+    subtract_inertia,
+)
 from trawl_ros.model.state import State, Tow, TowSlopes
 
 
 @dataclass(frozen=True)
 class RiggingDirections:
-    """Directions of the gear along which to differentiate, as far as ropes at blocks and boards go.
+    """Directions along which to differentiate the ropes at blocks and boards.
 
-    ``nodes`` (k, m) are those of `BarGroup.rows`, ``boards`` (12, m) metres and rotation vectors in
-    fixed axes, ``boundary`` those of the blocks and warps.
+    ``nodes`` (k, m) are the rows of `BarGroup.rows`, ``boards`` (12, m) metres and rotation vectors
+    in fixed axes, ``boundary`` the derivatives of blocks and warps.
     """
 
     nodes: FloatArray
@@ -60,8 +64,10 @@ def add_forces_along_tow(
 def net_inertia_slopes(
     model: GearModel, state: State, tow: Tow, acceleration: FloatArray
 ) -> FloatArray:
-    """Derivatives of M a by positions as data on the pattern, accelerations (dof,) held: of nodes
-    and of the bars between them, but for warps and ropes at boards (`subtract_rigging_inertia`).
+    """Return the derivatives of M a by positions as data on the pattern, at constant a (dof,).
+
+    They are those of nodes and of the bars between them. Warps and ropes at boards are left to
+    `subtract_rigging_inertia`.
     """
     pattern, n = model.pattern, model.nodes
     data, a = np.zeros(len(pattern.indices)), acceleration[: 3 * n].reshape(n, 3)
@@ -97,13 +103,13 @@ def subtract_rigging_inertia(
     Parameters
     ----------
     model, state, tow
-        Gear, and the place at which its mass is taken.
+        Gear, its state and boundary.
     acceleration
-        Generalised acceleration (dof,), held.
+        Generalised acceleration (dof,), constant.
     moved
         Directions.
     into
-        Sum that they are subtracted from.
+        Derivatives (dof, m) from which they are subtracted.
     """
     group, at = model.rigging, points_of(model, state, tow)
     subtract_inertia(
@@ -124,14 +130,15 @@ def subtract_rigging_inertia(
 
 
 def _turned_inertia(model: GearModel, rotations: FloatArray) -> FloatArray:
-    """Added mass and inertia (2, 2, 3, 3) of the boards in fixed axes."""
+    """Return added mass and inertia (2, 2, 3, 3) of the boards in fixed axes."""
     added = rotations @ (model.board.added_mass[:, None] * transpose(rotations))
     return np.stack([added, world_inertia(model.board, OUTWARD, rotations)], axis=1)
 
 
 def board_inertia(model: GearModel, rotations: FloatArray, acceleration: FloatArray) -> FloatArray:
-    """Boards' own mass, inertia and added mass, turned by rotations (2, 3, 3), times their part of
-    a generalised acceleration (dof,): forces and moments (2, 6).
+    """Return forces and moments (2, 6): the boards' inertia times a generalised acceleration.
+
+    Inertia is their own mass, inertia and added mass, rotated by ``rotations`` (2, 3, 3).
     """
     body = acceleration[3 * model.nodes :].reshape(2, 2, 3)
     push: FloatArray = (_turned_inertia(model, rotations) @ body[..., None])[..., 0]

@@ -1,4 +1,4 @@
-"""Observables of a state and their derivatives along directions, all of them in one pass."""
+"""Observables of a state and their derivatives along directions, in one pass."""
 
 import numpy as np
 
@@ -18,18 +18,18 @@ def observed_slopes(
     velocities: FloatArray | None = None,
     boundary: TowSlopes | None = None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Observables (n_observables,) and their derivatives (n_observables, m).
+    """Return observables (n_observables,) and their derivatives (n_observables, m).
 
     Parameters
     ----------
     model, state, tow
         Gear, its state and boundary.
     places
-        Directions (dof, m): metres and, of the boards, rotation vectors in fixed axes.
+        Directions (dof, m): metres, and rotation vectors of boards in fixed axes.
     velocities
-        Change (dof, m) of the velocities along them; held by default.
+        Change (dof, m) of the velocities along them; none by default.
     boundary
-        Change of the towing boundary along them; held by default.
+        Change of the towing boundary along them; none by default.
     """
     number = places.shape[1]
     if not number:
@@ -50,7 +50,7 @@ def observed_slopes(
 def _stepped_states(
     model: GearModel, state: State, places: FloatArray, velocities: FloatArray
 ) -> State:
-    """States stepped along all directions, with the `observed_nodes` alone."""
+    """Return states with a complex step along each direction, with the `observed_nodes` only."""
     n, number, at = model.nodes, places.shape[1], observed_nodes(model)
     rows = (3 * at[:, None] + np.arange(3)).ravel()
     shifted, going = (part[rows].T.reshape(number, -1, 3) for part in (places, velocities))

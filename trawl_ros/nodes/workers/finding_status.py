@@ -7,7 +7,7 @@ from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.report.sentences import headline
-from trawl_ros.effects.catalogue.instruments.frozen_sensor import EFFECT as FROZEN
+from trawl_ros.effects.catalogue.instruments import FROZEN_SENSOR as FROZEN
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 
 if TYPE_CHECKING:

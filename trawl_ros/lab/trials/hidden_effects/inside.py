@@ -159,7 +159,7 @@ def board_stall(rng: np.random.Generator) -> Hidden:
     onset, power = np.radians(rng.uniform(14.0, 16.0)), rng.uniform(1.8, 2.2)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        return model.with_board(bend=Stalling(size, onset, power))
+        return model.with_board(coefficient_modifier=Stalling(size, onset, power))
 
     return Hidden('board_stall', '1/rad²', 2.0, (4.0, 12.0), gear=gear)
 
@@ -185,7 +185,7 @@ def tilt_lift(rng: np.random.Generator) -> Hidden:
     bend = rng.uniform(-0.5, 0.5)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        return model.with_board(bend=Leaning(size, bend))
+        return model.with_board(coefficient_modifier=Leaning(size, bend))
 
     return Hidden('tilt_lift', '1/rad', 0.4, (2.0, 2.0), gear=gear)
 

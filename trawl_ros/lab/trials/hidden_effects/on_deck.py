@@ -173,7 +173,7 @@ def port_board_lift(rng: np.random.Generator) -> Hidden:
     """A port board that is bent or has lost a slat."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        return model.with_board(bend=MoreLoad(size, LIFT, 1.0, side=0))
+        return model.with_board(coefficient_modifier=MoreLoad(size, LIFT, 1.0, side=0))
 
     return Hidden('port_board_lift', '', 0.1, (0.6, 0.6), gear=gear)
 
@@ -182,7 +182,7 @@ def starboard_board_drag(rng: np.random.Generator) -> Hidden:
     """A starboard board that drags something along."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-        return model.with_board(bend=MoreLoad(size, DRAG, 0.0, side=1))
+        return model.with_board(coefficient_modifier=MoreLoad(size, DRAG, 0.0, side=1))
 
     return Hidden('starboard_board_drag', '', 0.1, (0.0, 1.0), gear=gear)
 

@@ -1,23 +1,106 @@
-"""Passes over the ropes at blocks and boards: derivatives of forces and inertia along directions.
+"""Passes over bars: derivatives of forces and of M a, the force that accelerates them; compiled.
 
-Bars are those of a `BarGroup`, whose points are numbered as in `trawl_ros.model.gear_model`; each
-direction takes a complex step, all of them in one pass.
+Ends, properties, water and slots are those of `trawl_ros.model.bar_pass`. The ropes at blocks and
+boards are a `BarGroup`, whose points are numbered as in `trawl_ros.model.gear_model`; they take one
+complex step per direction, all of them in one pass.
 """
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
+from trawl_ros.model.bar import mass_at
 from trawl_ros.model.bar_pass import WaterTable, add_bar_forces
 from trawl_ros.model.compiled import compiled, inner
 from trawl_ros.model.numerics import STEP
-from trawl_ros.model.slopes.inertia_pass import add_bar_inertia
+
+
+@compiled
+def add_bar_inertia(
+    ends: IntArray,
+    x: FloatArray,
+    a: FloatArray,
+    rest: FloatArray,
+    bars: tuple[FloatArray, ...],
+    water: WaterTable,
+    total: FloatArray,
+) -> None:
+    """Add half of the bars' mass times the acceleration of the points (p, 3) at both ends.
+
+    The mass includes the added mass.
+    """
+    mass, volume, added_normal, added_tangential = bars[2], bars[3], bars[8], bars[9]
+    vector, matrix = np.empty(3, x.dtype), np.empty((3, 3), x.dtype)
+    for n in range(len(ends)):
+        start, end = ends[n, 0], ends[n, 1]
+        for i in range(3):
+            vector[i] = x[end, i] - x[start, i]
+        height = 0.5 * (x[start, 2] + x[end, 2])
+        displaced = 0.5 * (water[0] - water[1] * height) * volume[n] * rest[n]
+        normal, tangential = displaced * added_normal[n], displaced * added_tangential[n]
+        mass_at(0.5 * mass[n] * rest[n], normal, tangential, vector, matrix)
+        for i in range(3):
+            for j in range(3):
+                total[start, i] += matrix[i, j] * a[start, j]
+                total[end, i] += matrix[i, j] * a[end, j]
+
+
+@compiled
+def add_bar_inertia_slopes(
+    ends: IntArray,
+    plain: IntArray,
+    wanted: BoolArray,
+    x: FloatArray,
+    a: FloatArray,
+    rest: FloatArray,
+    bars: tuple[FloatArray, ...],
+    water: WaterTable,
+    slots: IntArray,
+    data: FloatArray,
+) -> None:
+    """Add the derivatives of `add_bar_inertia` by the positions, for the plain bars ``wanted``."""
+    volume, added_normal, added_tangential = bars[3], bars[8], bars[9]
+    along = np.empty(3)
+    for number in range(len(plain)):
+        n = plain[number]
+        if not wanted[n]:
+            continue
+        start, end = ends[n, 0], ends[n, 1]
+        square = 0.0
+        for i in range(3):
+            along[i] = x[end, i] - x[start, i]
+            square += along[i] ** 2
+        span = np.sqrt(square)
+        for i in range(3):
+            along[i] /= span
+        density = water[0] - water[1] * 0.5 * (x[start, 2] + x[end, 2])
+        displaced = 0.5 * density * volume[n] * rest[n]
+        more = displaced * (added_tangential[n] - added_normal[n])
+        for side in range(2):
+            point = end if side else start
+            share = 0.0
+            for i in range(3):
+                share += along[i] * a[point, i]
+            for i in range(3):
+                # Added mass goes with the density, which falls with the mean height of both ends.
+                sunk = displaced * added_normal[n] * a[point, i] + more * share * along[i]
+                sunk *= -0.5 * water[1] / density
+                for j in range(3):
+                    turned = along[i] * (a[point, j] - 2.0 * share * along[j])
+                    if i == j:
+                        turned += share
+                    turned *= more / span
+                    at = 36 * number + 6 * (3 * side + i) + j
+                    data[slots[at]] -= turned
+                    data[slots[at + 3]] += turned
+                data[slots[36 * number + 6 * (3 * side + i) + 2]] += sunk
+                data[slots[36 * number + 6 * (3 * side + i) + 5]] += sunk
 
 
 @inner
 def _step_lengths(
     sides: IntArray, lengths: FloatArray, segments: float, values: FloatArray, there: FloatArray
 ) -> None:
-    """Fill in the values of bars, stepped along those of the whole warps (2,) they belong to."""
+    """Fill in the values of bars with a complex step along those of their warps (2,)."""
     for n in range(len(values)):
         longer = lengths[sides[n]] / segments if sides[n] >= 0 else 0.0
         there[n] = values[n] + 1j * STEP * longer
@@ -32,9 +115,9 @@ def _add_gathered(
     into: FloatArray,
     column: int,
 ) -> None:
-    """Add the slopes of generalised forces, from the stepped loads (p, 3) of points, to a column.
+    """Add the derivatives of generalised forces to a column, from stepped loads (p, 3) of points.
 
-    ``arms`` (2, 3, 3) to the fastening points are stepped too.
+    ``arms`` (2, 3, 3) to the fastening points have a complex step too.
     """
     count = (len(into) - 12) // 3
     for k in range(len(points)):
@@ -79,7 +162,7 @@ def add_warp_forces(
     rest, rest_rate, bars
         Unstretched lengths (k,) of the bars, their rates, and properties.
     boundary
-        Derivatives as `TowSlopes` has them.
+        Derivatives in the order of `TowSlopes`.
     """
     blocks, block_velocities, lengths, length_rates = boundary
     hung = (len(into) - 12) // 3 + 6
@@ -137,7 +220,7 @@ def subtract_inertia(
     acceleration
         Generalised acceleration (dof,), held.
     nodes, boards, blocks, lengths
-        Directions as `RiggingDirections` has them.
+        Directions of `RiggingDirections`.
     """
     count = (len(into) - 12) // 3
     there, held, total = np.empty((3, len(points), 3), np.complex128)

@@ -1,1 +1,0 @@
-"""Effects of the boards: their law, their rigging, their damage."""

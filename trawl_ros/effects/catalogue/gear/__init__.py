@@ -1,1 +1,0 @@
-"""Effects of ropes, weights, floats and net."""

@@ -1,1 +1,0 @@
-"""Effects of the water: currents, leeway, sea and ground."""

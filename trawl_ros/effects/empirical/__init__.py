@@ -1,1 +1,0 @@
-"""Empirical terms for what no effect of the catalogue explains."""
