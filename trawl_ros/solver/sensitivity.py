@@ -1,8 +1,8 @@
-"""Derivatives of every observable at a steady state, by the implicit function theorem.
+"""Derivatives of all observables at a steady state, by the implicit function theorem.
 
 At a root F(x, p) = 0, so dx/dp = K⁻¹ ∂F/∂p with K = -∂F/∂x; one factorisation serves all
-parameters. The partial derivatives and the observables along dx/dp are taken by the complex
-step and with C = -∂F/∂v, so the result is exact to the accuracy of the linear solution.
+parameters. Partial derivatives use the complex step and C = -∂F/∂v, so the result is exact to the
+accuracy of the linear solution.
 """
 
 import numpy as np
@@ -30,7 +30,7 @@ def _ahead(found: Equilibrium) -> FloatArray:
 
 
 def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
-    """Derivatives of the observables by the parameters.
+    """Return the derivatives of the observables by the parameters.
 
     Returns
     -------
@@ -39,7 +39,7 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
     """
     number, state = len(COEFFICIENTS), found.state
     pushes = np.zeros((model.dof, len(PARAMETERS)))
-    # Coefficients push the boards and nothing else.
+    # Coefficients change only the loads on the boards, the last twelve rows.
     pushes[-12:, :number] = own_load_slopes(
         model.board,
         model.coefficients,
@@ -53,6 +53,7 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
     known = rest_linearisation(model, state, found.tow)
     velocities, boundary = _changed_motion(model, found)
     add_forces_along_tow(model, state, found.tow, boundary, pushes)
+    # The whole gear moves faster, so its drag changes by C times the velocity.
     pushes[:, -1] -= model.pattern.times(known.motion.damping, velocities[:, -1])
     shifts = solve_refined(known.factor, pushes)
     found.remember(Tangent(model.coefficients, model.rest, shifts))
@@ -60,7 +61,7 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
 
 
 def _changed_motion(model: GearModel, found: Equilibrium) -> tuple[FloatArray, TowSlopes]:
-    """Change of velocities (dof, n_parameters) and boundary with the parameters."""
+    """Return the change of velocities (dof, n_parameters) and boundary with the parameters."""
     number, ahead = len(PARAMETERS), _ahead(found)
     velocities, boundary = np.zeros((model.dof, number)), held_boundary(number)
     boards = velocities[3 * model.nodes :].reshape(2, 6, number)
@@ -72,9 +73,9 @@ def _changed_motion(model: GearModel, found: Equilibrium) -> tuple[FloatArray, T
 
 
 def net_sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
-    """Derivatives of the observables by factors on drag and weight in water of the net.
+    """Return derivatives of the observables by factors on drag and weight in water of the net.
 
-    Forces are linear in both, so their derivatives are differences.
+    Forces are linear in both, so differences are exact.
 
     Returns
     -------
