@@ -318,7 +318,10 @@ def test_set_points_that_leave_something_out_are_refused_and_the_node_goes_on(
     opened(graph, ship, f'udp://:{port}')
     say(port, 'PXYZS,4.0', 'PXYZR,1.0')
     refused = 'not understood: a set point that is refused: '
-    reasons = {f'{refused}a rate of turn beyond 0.02 rad/s', f'{refused}a speed beyond 0 to 4 m/s'}
+    reasons = {
+        f'{refused}rate of turn: expected at most 0.02 rad/s',
+        f'{refused}speed: expected 0 to 4 m/s',
+    }
     graph.until(lambda: reasons <= ship.report('sentences').values.keys())
     assert ship.commands == []
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from trawl_ros.control.autopilot import FollowTrack, HoldCourse, HoldHeading
-from trawl_ros.control.drift import Way
+from trawl_ros.control.track import Way
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.core.geodesy import Datum
 from trawl_ros.model.gear_model import GearModel
