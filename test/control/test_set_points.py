@@ -34,7 +34,7 @@ def test_warps_beyond_the_limits_are_refused_and_wake_nothing(guard, wanted, rea
 
 
 def test_nothing_is_wanted_of_winches_whose_counters_are_unknown():
-    with pytest.raises(ValueError, match='port warp: .* counter'):
+    with pytest.raises(ValueError, match=r'port warp: .* counter'):
         SetPointGuard(LIMITS).warps((400.0, math.nan), 0)
 
 

@@ -145,7 +145,7 @@ def test_corrections_to_a_law_have_a_prior(tmp_path: Path) -> None:
     ('law', 'part'),
     [
         ({'kind': 'table'}, 'board.law: a table needs either door or points, found 0'),
-        ({'kind': 'table', 'door': 'nothing_like_it'}, 'comes with no such file'),
+        ({'kind': 'table', 'door': 'nothing_like_it'}, 'no such file'),
         ({'kind': 'foil', 'max_lift': 1.5}, 'board.law: a foil needs max_lift and stall_deg'),
         (
             {'kind': 'table', 'door': 'flat_wooden', 'heel': [{'tilt_deg': 5.0, 'upward': 0.2}]},

@@ -65,8 +65,8 @@ class _Channel:
 
     @classmethod
     def empty(cls) -> '_Channel':
-        stamps, lags = (deque(maxlen=OPTIONS.period_readings) for _ in range(2))
-        return cls(deque(maxlen=OPTIONS.median_readings), stamps, lags)
+        recent, usual = OPTIONS.median_readings, OPTIONS.period_readings
+        return cls(deque(maxlen=recent), deque(maxlen=usual), deque(maxlen=usual))
 
     def take(self, value: float, stamp: int, now: int) -> None:
         self.same = self.same + 1 if self.values and value == self.values[-1] else 1
