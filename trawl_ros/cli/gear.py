@@ -175,7 +175,7 @@ def doors() -> None:
     from trawl_ros.core.resources import share_path
     from trawl_ros.gear.polars import load_door
 
-    table = plain_table('door', 'angles', 'C_L at most', 'source')
+    table = plain_table('door', 'angles', 'C_L at most', 'source', wrapped=('source',))
     for path in sorted(share_path('config', 'doors').glob('*.yaml')):
         door = load_door(path.stem)
         best = max(door.points, key=lambda point: point.lift)

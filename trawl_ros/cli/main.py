@@ -19,7 +19,7 @@ from trawl_ros.core.version import __version__
 COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         'demo': ('lab.demo.command', 'Tow, record, replay and refit through the real ROS graph.'),
-        'tow': ('cli.tow', 'Tow a scenario and record the readings of the instruments as a bag.'),
+        'tow': ('cli.tow', 'Tow a scenario and record its instruments as a bag.'),
         'identify': ('cli.identify', 'Refit the twelve board coefficients from recorded bags.'),
         'plan-trial': ('cli.plan_trial', 'Plan the sea trial that determines the boards best.'),
         'diagnose': (
@@ -38,12 +38,12 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
             'lab.commands.study',
             'Run the whole chain for long, and report what that shows.',
         ),
-        'scenarios': ('cli.scenarios', 'List the scenarios that come with the package.'),
-        'import-log': ('cli.import_log', 'Turn a log from sea, a table or NMEA 0183, into a bag.'),
+        'scenarios': ('cli.scenarios', 'List the scenarios of the package.'),
+        'import-log': ('cli.import_log', 'Convert a log from sea, a table or NMEA 0183, to a bag.'),
         'bag': ('cli.bag', 'Inspect, check, repair and export bags.'),
         'policy': ('cli.policy', 'Write the access rights of all nodes for SROS 2.'),
         'view': ('cli.view', 'Show the tow of bags in Rerun, in space and over time.'),
-        'plot': ('cli.plot', 'Draw the tow of a bag: gear, time series, sonar, track, animation.'),
+        'plot': ('cli.plot', 'Draw the tow of a bag: gear, time series, sonar, track, film.'),
     }
 )
 """Module and sentence of each command, for `LoadedGroup`."""

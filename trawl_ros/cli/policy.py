@@ -18,7 +18,9 @@ MAX_DOMAIN_ID = 232
 
 def _namespace(ctx: click.Context, param: click.Parameter, value: str) -> str:
     if not NAMESPACE_PATTERN.fullmatch(value.strip('/')):
-        raise click.BadParameter(f'found {value!r}, expected a ROS namespace such as {NAMESPACE}')
+        raise click.BadParameter(
+            f'found {value!r}, expected a namespace of ROS such as {NAMESPACE}'
+        )
     return value.strip('/')
 
 

@@ -1,23 +1,28 @@
 """Tables on the standard output, with full width if it is not a terminal."""
 
+from typing import Literal
+
 from rich.console import Console
 from rich.table import Table
 
-FILE_WIDTH = 240
-"""Columns of text in a file or pipe."""
+FILE_COLUMNS = 2000
+"""Width of a file or pipe, in which no cell is cut off."""
 
 
 def output_console() -> Console:
     """Return the console for results."""
     console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=FILE_WIDTH)
+    return console if console.is_terminal else Console(highlight=False, width=FILE_COLUMNS)
 
 
-def plain_table(*headings: str, right: tuple[str, ...] = ()) -> Table:
-    """Return a table without a frame; columns in ``right`` are aligned right."""
+def plain_table(
+    *headings: str, right: tuple[str, ...] = (), wrapped: tuple[str, ...] = ()
+) -> Table:
+    """Return a table without a frame, with columns aligned ``right`` or ``wrapped``."""
     table = Table(box=None, pad_edge=False)
     for heading in headings:
-        table.add_column(heading, justify='right' if heading in right else 'left', no_wrap=True)
+        side: Literal['left', 'right'] = 'right' if heading in right else 'left'
+        table.add_column(heading, justify=side, no_wrap=heading not in wrapped)
     return table
 
 

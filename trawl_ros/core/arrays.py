@@ -8,9 +8,6 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 """Real numbers."""
 
-ComplexArray = NDArray[np.complex128]
-"""Complex numbers: modes, and derivatives by a complex step."""
-
 BoolArray = NDArray[np.bool_]
 """Masks."""
 

@@ -71,20 +71,27 @@ def first_guess(model: GearModel, tow: Tow, heading: float, *, turned: bool = Fa
         start = starts[2 * k // len(layout.bridles)]
         nodes[line] = start + share[:, None] * (nodes[end] - start)
     turn = about_axis(2, heading)
-    port = about_axis(2, attack) @ about_axis(0, lean)
-    flip = np.array([1.0, -1.0, 1.0])
-    attitudes = np.stack([port, flip[:, None] * port * flip])
     return at_velocity(
         State(
             nodes=nodes @ turn.T,
             board_positions=boards @ turn.T,
-            board_rotations=turn @ attitudes,
+            board_rotations=turn @ attitudes(attack, 0.0, lean),
             node_velocities=np.zeros_like(nodes),
             board_velocities=np.zeros((2, 3)),
             board_rates=np.zeros((2, 3)),
         ),
         tow.block_velocities.mean(0),
     )
+
+
+def attitudes(yaw: float, pitch: float, roll: float) -> FloatArray:
+    """Return rotations (2, 3, 3) of both boards from angles of the port board, rad.
+
+    Yaw turns the leading edge outward, pitch is nose down, roll tips the outward normal up.
+    """
+    port = about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
+    flip = np.array([1.0, -1.0, 1.0])
+    return np.stack([port, flip[:, None] * port * flip])
 
 
 def _lay_sweep(model: GearModel, nodes: FloatArray, side: int, board: FloatArray) -> None:

@@ -19,13 +19,7 @@ from trawl_ros.solver.continuation import BranchPoint, branch
 from trawl_ros.solver.first_guess import FIRST_ATTACK, FIRST_LEAN, first_guess
 from trawl_ros.solver.modes import linearised_motion
 from trawl_ros.solver.operating_point import OperatingPoint, remedy_command, steady_tow
-from trawl_ros.solver.relax import (
-    FORCE_TOLERANCE,
-    WARM_ITERATIONS,
-    WARM_TIME_STEP_S,
-    relax,
-    without_attitude,
-)
+from trawl_ros.solver.relax import FORCE_TOLERANCE, relax, relax_warm, without_attitude
 from trawl_ros.solver.stability import growing_mode, stability
 
 TOWING_SPEED_M_S = 2.1
@@ -71,14 +65,7 @@ def followed(
     """
     if known is not None and point == replace(known[0], speed=point.speed):
         speed = known[0].speed
-        state, _, residual = relax(
-            model,
-            known[1],
-            steady_tow(model, known[0]),
-            tolerance=FORCE_TOLERANCE,
-            time_step=WARM_TIME_STEP_S,
-            limit=WARM_ITERATIONS,
-        )
+        state, _, residual = relax_warm(model, known[1], steady_tow(model, known[0]))
         if speed > point.speed and residual <= FORCE_TOLERANCE and not lies_over(model, state):
             return _followed(model, point, where, speed, state)
     tried = []
@@ -135,14 +122,7 @@ def _followed(
         first, last, before = first or here, here, last
         if here.value <= point.speed:
             _, tow = family(point.speed)
-            arrived, _, residual = relax(
-                model,
-                here.state,
-                tow,
-                tolerance=FORCE_TOLERANCE,
-                time_step=WARM_TIME_STEP_S,
-                limit=WARM_ITERATIONS,
-            )
+            arrived, _, residual = relax_warm(model, here.state, tow)
             if residual > FORCE_TOLERANCE:
                 break
             return arrived

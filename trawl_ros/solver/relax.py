@@ -104,6 +104,18 @@ def relax(
         state = state.moved(step / max(size, 1.0))
 
 
+def relax_warm(model: GearModel, state: State, tow: Tow) -> tuple[State, int, float]:
+    """Find a root from a known state nearby; returns as `relax` does."""
+    return relax(
+        model,
+        state,
+        tow,
+        tolerance=FORCE_TOLERANCE,
+        time_step=WARM_TIME_STEP_S,
+        limit=WARM_ITERATIONS,
+    )
+
+
 def step_size(model: GearModel, step: FloatArray) -> float:
     """Return the size of a step (dof,) as a fraction of the largest step."""
     n = model.nodes

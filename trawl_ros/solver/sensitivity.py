@@ -13,7 +13,7 @@ from trawl_ros.model.board import own_load_slopes
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.slopes.along import add_forces_along_tow
 from trawl_ros.model.slopes.observed import observed_slopes
-from trawl_ros.model.state import TowSlopes, held_boundary
+from trawl_ros.model.state import State, TowSlopes, held_boundary
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.linear.factor import solve_refined
@@ -29,6 +29,21 @@ def _ahead(found: Equilibrium) -> FloatArray:
     return np.array([np.cos(heading), np.sin(heading), 0.0])
 
 
+def coefficient_pushes(model: GearModel, state: State) -> FloatArray:
+    """Return derivatives (12, 12) of the boards' own loads by the coefficients."""
+    slopes: FloatArray = own_load_slopes(
+        model.board,
+        model.coefficients,
+        OUTWARD,
+        state.board_positions,
+        state.board_rotations,
+        state.board_velocities,
+        state.board_rates,
+        model.water,
+    ).reshape(12, len(COEFFICIENTS))
+    return slopes
+
+
 def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
     """Return the derivatives of the observables by the parameters.
 
@@ -40,16 +55,7 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
     number, state = len(COEFFICIENTS), found.state
     pushes = np.zeros((model.dof, len(PARAMETERS)))
     # Coefficients change only the loads on the boards, the last twelve rows.
-    pushes[-12:, :number] = own_load_slopes(
-        model.board,
-        model.coefficients,
-        OUTWARD,
-        state.board_positions,
-        state.board_rotations,
-        state.board_velocities,
-        state.board_rates,
-        model.water,
-    ).reshape(12, number)
+    pushes[-12:, :number] = coefficient_pushes(model, state)
     known = rest_linearisation(model, state, found.tow)
     velocities, boundary = _changed_motion(model, found)
     add_forces_along_tow(model, state, found.tow, boundary, pushes)

@@ -16,11 +16,10 @@ from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
 from trawl_ros.model.observables import observe
-from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.cold_start import held_shape
 from trawl_ros.solver.equilibrium import SteadyState, steady_state, with_effects
-from trawl_ros.solver.first_guess import first_guess
+from trawl_ros.solver.first_guess import attitudes, first_guess
 from trawl_ros.solver.linear.factor import factorised_part
 from trawl_ros.solver.operating_point import steady_tow
 from trawl_ros.solver.relax import relax, without_attitude
@@ -68,16 +67,6 @@ class Trim:
     points: FloatArray
     model: GearModel
     steady: SteadyState
-
-
-def attitudes(yaw: float, pitch: float, roll: float) -> FloatArray:
-    """Return rotations (2, 3, 3) of both boards from angles of the port board, rad.
-
-    Yaw turns the leading edge outward, pitch is nose down, roll tips the outward normal up.
-    """
-    port = about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
-    flip = np.array([1.0, -1.0, 1.0])
-    return np.stack([port, flip[:, None] * port * flip])
 
 
 def roll_for(inclination: float, pitch: float) -> float:

@@ -11,9 +11,12 @@ from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import find_equilibrium, steady_state
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.relax import relax, without_attitude
-from trawl_ros.solver.trimming.held_boards import MIRROR, WAYS, held_board
+from trawl_ros.solver.trimming.held_boards import WAYS, held_board
 from trawl_ros.solver.trimming.measured import angles_from
 from trawl_ros.solver.trimming.over_range import RangeTrim, trim_over_range
+
+MIRROR = np.array([-1.0, 1.0, -1.0])
+"""Signs of the starboard board's rotation vector if the port board rotates by it, mirrored."""
 
 WARPS, SPEEDS = (300.0, 700.0), (1.1, 1.8)
 

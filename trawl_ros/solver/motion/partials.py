@@ -17,8 +17,7 @@ from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.model.assembly import board_loads, forces, mass
 from trawl_ros.model.bar_pass import add_bar_forces, water_of
-from trawl_ros.model.board import own_load_slopes
-from trawl_ros.model.gear_model import OUTWARD, GearModel
+from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.observables import observe
 from trawl_ros.model.slopes.along import add_forces_along_tow, board_inertia
@@ -27,6 +26,7 @@ from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.likeness import same_mass, same_observables
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.parameters import MotionParameters
+from trawl_ros.solver.sensitivity import coefficient_pushes
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -127,7 +127,7 @@ def pushes(
     found = np.zeros((model.dof, len(parameters)))
     add_forces_along_tow(model, end.state, end.tow, boundary, found)
     if parameters.coefficients:
-        found[-12:, parameters.of_coefficients] += _by_coefficients(model, end)
+        found[-12:, parameters.of_coefficients] += coefficient_pushes(model, end.state)
     if parameters.net:
         found[:, parameters.of_net] += _by_net(model, net, end)
     found[:, parameters.of_effects] += by_effects
@@ -236,8 +236,8 @@ class _GearAtEnd:
 
     def _push(self, model: GearModel) -> FloatArray:
         """Return F - M a (dof,)."""
-        end, alike = self.end, same_mass(model, self.model)
-        inertia = self._inertia if alike else mass(model, end.predicted, end.tow)
+        end, shared = self.end, same_mass(model, self.model)
+        inertia = self._inertia if shared else mass(model, end.predicted, end.tow)
         pull = forces(model, end.state, end.tow)
         left: FloatArray = pull - model.pattern.times(inertia, end.acceleration)
         return left
@@ -249,22 +249,6 @@ class _GearAtEnd:
     def _resisted(self, model: GearModel) -> FloatArray:
         """Return the boards' own inertia times acceleration (2, 6)."""
         return board_inertia(model, self.end.predicted.board_rotations, self.end.acceleration)
-
-
-def _by_coefficients(model: GearModel, end: StepEnd) -> FloatArray:
-    """Return derivatives (12, 12) of the boards' own loads by the coefficients."""
-    state = end.state
-    slopes = own_load_slopes(
-        model.board,
-        model.coefficients,
-        OUTWARD,
-        state.board_positions,
-        state.board_rotations,
-        state.board_velocities,
-        state.board_rates,
-        model.water,
-    )
-    return slopes.reshape(12, -1)
 
 
 def _by_net(model: GearModel, net: NetLoads, end: StepEnd) -> FloatArray:

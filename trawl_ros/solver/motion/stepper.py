@@ -98,6 +98,8 @@ class DifferentiatedStepper(Stepper):
 
 def is_too_long(motion: Motion, solved: SolvedStep) -> bool:
     """Return True if a board ends too far from where its averaged acceleration leads it."""
-    beside = solved.step.scheme.by_position(solved.step.h) * (solved.acceleration - motion.averaged)
-    boards: FloatArray = np.abs(beside[-12:].reshape(2, 2, 3)).max(axis=(0, 2))
+    departure = solved.step.scheme.by_position(solved.step.h) * (
+        solved.acceleration - motion.averaged
+    )
+    boards: FloatArray = np.abs(departure[-12:].reshape(2, 2, 3)).max(axis=(0, 2))
     return bool(boards[0] > DEPARTURE_M or boards[1] > DEPARTURE_RAD)

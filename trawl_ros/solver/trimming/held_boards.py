@@ -19,9 +19,6 @@ from trawl_ros.model.numerics import STEP, outer, skew, stepped
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.linear.factor import factorised_part
 
-MIRROR = np.array([-1.0, 1.0, -1.0])
-"""Signs of the starboard board's rotation vector if the port board rotates by it, mirrored."""
-
 ACROSS = np.array([1.0, -1.0, 1.0])
 """Signs of a starboard point's move if its mirror image moves by a vector."""
 

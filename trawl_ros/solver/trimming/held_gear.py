@@ -13,10 +13,15 @@ from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.cold_start import bowed
 from trawl_ros.solver.equilibrium import with_effects
-from trawl_ros.solver.first_guess import coarser_model, first_guess, shifted_to
+from trawl_ros.solver.first_guess import (
+    attitudes,
+    coarser_model,
+    first_guess,
+    shifted_to,
+)
 from trawl_ros.solver.operating_point import steady_tow
 from trawl_ros.solver.relax import relax, without_attitude
-from trawl_ros.solver.trim import attitudes, roll_for
+from trawl_ros.solver.trim import roll_for
 from trawl_ros.solver.trimming.held_boards import HeldBoard, held_board
 
 SHAPE_FORCE_N, SHAPE_ITERATIONS = 1.0, 300

@@ -16,8 +16,8 @@ from trawl_ros.model.observables import observe
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import Observables
 from trawl_ros.solver.equilibrium import Equilibrium
+from trawl_ros.solver.first_guess import attitudes
 from trawl_ros.solver.relax import FORCE_TOLERANCE, relax, without_attitude
-from trawl_ros.solver.trim import attitudes
 
 FORCES = ('c1', 'c2', 'c3')
 """Constants of eq. 14 that are C_x^F, C_y^F and C_z^F where the slopes are zero."""
