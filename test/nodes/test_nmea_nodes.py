@@ -263,7 +263,7 @@ def test_set_points_drive_the_winches_within_limits_and_hold_when_they_cease(gra
     opened(graph, ship, f'udp://:{port}')
     say(port, 'PTRWL,410.0,M,411.0,M')
     refused = 'not understood: a set point that is refused: '
-    unknown = f'{refused}a port warp before its counter is known'
+    unknown = f'{refused}port warp: expected a reading of its counter first'
     graph.until(lambda: unknown in ship.report('sentences').values)
     # The counters are those of the ship that is commanded.
     winches = graph.add(lambda **given: TrawlNode('winches', namespace='heard', **given))
