@@ -7,6 +7,8 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
+from trawl_ros.records.topics import TOPICS, Topic
+
 ROOT = Path(__file__).parents[1]
 PAGES = {
     'README.md': 'overview.md',
@@ -21,7 +23,31 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for name, page in PAGES.items():
         text = (ROOT / name).read_text().replace('](docs/', '](')
         files.append(File.generated(config, page, content=text))
+    files.append(File.generated(config, 'reference/topics.md', content=topics()))
     return files
+
+
+def topics() -> str:
+    """Write the page of all topics from the registry."""
+    rows = ''.join(map(_row, TOPICS.values()))
+    return (
+        '# Topics\n\n'
+        'Nodes that play, record or show every topic, and an operator, are not named.\n\n'
+        '| topic | type | frame | published by | heard by | content |\n|---|---|---|---|---|---|\n'
+        f'{rows}'
+    )
+
+
+def _row(topic: Topic) -> str:
+    cells = (
+        f'`{topic.name}`',
+        topic.type.replace('/msg/', '/'),
+        topic.frame,
+        ', '.join(topic.published_by),
+        ', '.join(topic.heard_by),
+        topic.sentence,
+    )
+    return f'| {" | ".join(cells)} |\n'
 
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:

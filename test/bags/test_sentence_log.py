@@ -23,6 +23,7 @@ from trawl_ros.sentences.table import load_table, packaged_systems
 
 SEA_TRIAL = Path(__file__).parents[2] / 'bags/sea_trial'
 WATER = WaterColumn(density_kg_m3=1025.0)
+DRAWN = ('bottom', 'depth', 'opening_height')
 SYSTEMS = [name for name in packaged_systems() if name != 'set_points']
 MAPPING = """
 nmea:
@@ -40,18 +41,18 @@ nmea:
 
 @pytest.fixture(scope='module')
 def bag(tmp_path_factory):
-    """Three minutes of the sea trial, and a seabed, which it has not."""
+    """Three minutes of the sea trial, with a seabed and heights of the net drawn for them."""
     stretch = itertools.takewhile(
         lambda pair: pair[1].stamp < 180 * SECOND, iter(SampleStream([SEA_TRIAL], 'trawl'))
     )
     samples = [
         sample
         for _, sample in stretch
-        if fields_of_sample(sample) and getattr(sample, 'what', '') not in ('bottom', 'depth')
+        if fields_of_sample(sample) and getattr(sample, 'what', '') not in DRAWN
     ]
     draws = np.random.default_rng(7)
     for second in range(180):
-        for what in ('bottom', 'depth'):
+        for what in DRAWN:
             distance = float(draws.uniform(90.0, 110.0))
             samples.append(RangeSample(second * SECOND, what, distance, 0.1, 0.5, 2000.0))
     path = tmp_path_factory.mktemp('bags') / 'short'

@@ -12,7 +12,7 @@ import yaml
 ROOT = Path(__file__).parents[2]
 FILES = [
     path
-    for folder in ('doors', 'gear', 'hauls')
+    for folder in ('doors', 'gear', 'hauls', 'panels')
     for path in sorted((ROOT / 'config' / folder).glob('*.yaml'))
 ]
 
@@ -52,9 +52,9 @@ def test_a_file_and_its_sources_are_named(path: Path, notice: str) -> None:
     assert [source for source in named if source not in notice] == []
 
 
-def test_doors_and_hauls_give_sources() -> None:
+def test_doors_hauls_and_panels_give_sources() -> None:
     for path in FILES:
-        if path.parent.name in ('doors', 'hauls'):
+        if path.parent.name in ('doors', 'hauls', 'panels'):
             assert list(sources(yaml.safe_load(path.read_text('utf-8'))))
 
 

@@ -12,9 +12,8 @@ from trawl_ros.instruments.doors import DoorAttitude, DoorSpread, door_tilt
 from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.errors.records import ForceErrors, LengthErrors, SpeedErrors, TurnErrors
 from trawl_ros.instruments.parameters import (
-    AttitudeParameters,
-    FixParameters,
-    HeadingParameters,
+    AngleParameters,
+    LengthParameters,
     PressureParameters,
     RangeParameters,
     SpreadParameters,
@@ -103,7 +102,7 @@ def test_pitch_is_nose_down_and_roll_is_top_to_starboard_on_any_heading(heading:
 
 
 def test_attitude_errs_by_the_stated_amount() -> None:
-    sensor = DoorAttitude('starboard', AttitudeParameters(rate_hz=1.0, noise_deg=0.5), DRAWS)
+    sensor = DoorAttitude('starboard', AngleParameters(rate_hz=1.0, noise_deg=0.5), DRAWS)
     samples = [s for k in range(4000) for s in sensor.observe(turn('y', 0.1), k * SECOND)]
     pitches = np.array([s.pitch for s in samples])
     assert (samples[0].side, samples[0].std) == ('starboard', pytest.approx(math.radians(0.5)))
@@ -138,7 +137,7 @@ def test_log_and_gps_report_their_own_velocity() -> None:
 
 
 def test_heading_stays_within_half_a_turn() -> None:
-    sensor = Heading(HeadingParameters(rate_hz=1.0), DRAWS)
+    sensor = Heading(AngleParameters(rate_hz=1.0), DRAWS)
     (sample,) = sensor.observe(math.radians(350.0), 0)
     assert sample.heading == pytest.approx(math.radians(-10.0))
 
@@ -179,7 +178,7 @@ def test_a_position_comes_back_through_geocentric_coordinates(
 
 
 def test_a_fix_errs_by_metres_on_the_ground() -> None:
-    sensor = GpsFix(FixParameters(rate_hz=1.0, noise_m=2.0), Datum(60.0, 2.0), DRAWS)
+    sensor = GpsFix(LengthParameters(rate_hz=1.0, noise_m=2.0), Datum(60.0, 2.0), DRAWS)
     fixes = [fix for k in range(3000) for fix in sensor.observe(np.zeros(3), k * SECOND)]
     east = np.array([(f.longitude - 2.0) * 55_800.0 for f in fixes])
     assert east.std() == pytest.approx(2.0, rel=0.05)

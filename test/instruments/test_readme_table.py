@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from trawl_ros.instruments.errors.faults import KINDS
-from trawl_ros.instruments.parameters import load_instruments
+from trawl_ros.instruments.parameters import GROUPS, load_instruments, observing
 from trawl_ros.records.topics import INSTRUMENTS
 
 README = Path(__file__).parents[2] / 'README.md'
@@ -49,6 +49,11 @@ def rates() -> dict[str, float]:
         'vessel/echo_sounder/depth': vessel.echo_sounder.depth.rate_hz,
         'vessel/echo_sounder/school': vessel.echo_sounder.school.rate_hz,
         'vessel/fish_sonar': vessel.fish_sonar.rate_hz,
+        **{
+            row.name: getattr(getattr(default, group), row.errors).rate_hz
+            for node, group in GROUPS.items()
+            for row in observing(node)
+        },
     }
 
 

@@ -13,7 +13,9 @@ from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.from_messages import SAMPLE_TOPICS, to_sample
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.records.registry import changed, with_numbers
 from trawl_ros.records.samples import (
+    INSTRUMENTS,
     AttitudeSample,
     FixSample,
     HeadingSample,
@@ -54,6 +56,16 @@ SAMPLES = [
     SchoolsSample(STAMP, np.array([[1200.0, -30.0, -150.0]])),
     SonarPointsSample(STAMP, np.array([[1.0, 2.0, -3.0, 120.0], [4.0, 5.0, -6.0, 7.0]])),
 ]
+
+
+SAMPLES += [
+    with_numbers(
+        changed(row.blank, stamp=STAMP), {field: 0.25 + n for n, field in enumerate(row.fields)}
+    )
+    for row in INSTRUMENTS
+    if row.errors
+]
+"""Those of sensors that only measure observables have numbers of their own, each another."""
 
 
 def through_bytes(sample):

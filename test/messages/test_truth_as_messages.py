@@ -14,12 +14,14 @@ from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_from_messages import (
     door_truth,
     net_truth,
+    observables_truth,
     schools_truth,
     seabed_truth,
     vessel_truth,
     winch_truth,
 )
 from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
+from trawl_ros.records.observables import OBSERVABLES, Observables
 from trawl_ros.records.topics import TOPICS, TRUTH
 from trawl_ros.records.truth import (
     DoorTruth,
@@ -74,6 +76,7 @@ TRUTH_RECORD = Truth(
     ),
     schools=(SchoolTruth(np.array([50.0, 0.0, -140.0]), np.array([80.0, 40.0, 20.0]), 0.25),),
     seabed=SeabedTruth(250.0, 240.0),
+    observables=Observables(*np.linspace(0.25, 5.5, len(OBSERVABLES))),
 )
 
 
@@ -118,6 +121,13 @@ def test_schools_and_seabed_come_back(received):
     assert seabed_truth(received['truth/seabed']) == TRUTH_RECORD.seabed
     (found,) = schools_truth(received['truth/schools'])
     assert_close(found, TRUTH_RECORD.schools[0])
+
+
+def test_observables_come_back_and_those_that_are_missing_are_nan(received):
+    message = received['truth/observables']
+    assert observables_truth(message) == TRUTH_RECORD.observables
+    message.name[0] = 'of_another_model'
+    assert np.isnan(observables_truth(message).door_spread)
 
 
 def test_the_opening_in_the_sonars_plane_is_read_off_its_section(received):

@@ -8,8 +8,7 @@ from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.lab.validation.panels.panel import panel_loads
 from trawl_ros.lab.validation.panels.published import netting_of
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.net.twine_drag import VISCOSITY, viscous
-from trawl_ros.model.net.wake import exposure, exposure_of, sheet, slowed
+from trawl_ros.model.net.wake import VISCOSITY, exposure, exposure_of, sheet, slowed, viscous
 
 ANGLE = np.pi / 4
 

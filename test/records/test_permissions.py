@@ -14,7 +14,6 @@ from trawl_ros.core.resources import share_path
 from trawl_ros.records.permissions import GRAPH, security_files
 from trawl_ros.records.rights import OPERATOR, SET_POINTS, enclaves
 
-CONFIG = share_path('config', 'sros2')
 GUIDE = Path(__file__).parents[2] / 'docs' / 'guides' / 'security.md'
 COMMANDING = {'autotrawl_node', 'autopilot_node', 'trial_node', SET_POINTS, OPERATOR}
 
@@ -25,11 +24,12 @@ def topics(text: str, way: str) -> set[str]:
     return {str(topic.text) for topic in found}
 
 
-def test_the_files_that_ship_are_what_the_command_writes(tmp_path: Path) -> None:
+def test_the_command_writes_policy_governance_and_permissions(tmp_path: Path) -> None:
     out = tmp_path / 'security'
     assert CliRunner().invoke(command, ['--out', str(out)]).exit_code == 0
-    shipped = {path.relative_to(CONFIG): path.read_text() for path in CONFIG.rglob('*.xml')}
-    assert {path.relative_to(out): path.read_text() for path in out.rglob('*.xml')} == shipped
+    written = {str(path.relative_to(out)): path.read_text() for path in out.rglob('*.xml')}
+    assert written == security_files()
+    assert written['policy.xml'] == share_path('config', 'sros2', 'policy.xml').read_text()
     again = CliRunner().invoke(command, ['--out', str(out)])
     assert 'exists already' in str(again.exception)
 

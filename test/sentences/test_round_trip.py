@@ -24,13 +24,16 @@ TURN = 2 * math.pi
 
 @pytest.fixture(scope='module')
 def samples():
-    """Six minutes with all instruments in which the warps change, and a seabed made up for them."""
+    """Six minutes in which warps change, with a seabed and heights of the net drawn for them."""
     stream = SampleStream([BAG], 'trawl')
     stretch = itertools.takewhile(lambda pair: pair[1].stamp < 2000 * SECOND, iter(stream))
-    found = [sample for _, sample in stretch if sample.stamp >= 1640 * SECOND]
+    found = [
+        sample
+        for _, sample in stretch
+        if sample.stamp >= 1640 * SECOND and getattr(sample, 'what', '') != 'opening_height'
+    ]
     draws = np.random.default_rng(23)
-    # The sea trial has none.
-    for what, depth in (('bottom', 140.0), ('depth', 310.0)):
+    for what, depth in (('bottom', 140.0), ('depth', 310.0), ('opening_height', 95.0)):
         for second in range(1640, 2000):
             distance = depth + float(draws.normal(0.0, 3.0))
             found.append(RangeSample(second * SECOND, what, distance, 0.1, 0.5, 2000.0))

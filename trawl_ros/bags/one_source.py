@@ -17,14 +17,7 @@ import numpy as np
 from trawl_ros.core.arrays import BoolArray, FloatArray, StampArray
 from trawl_ros.core.stamps import CONFIRMING_READINGS, lasting, when
 from trawl_ros.core.time import SECOND
-from trawl_ros.records.samples import (
-    AttitudeSample,
-    PressureSample,
-    RangeSample,
-    Sample,
-    VelocitySample,
-    WinchSample,
-)
+from trawl_ros.records.samples import SENSORS, Sample
 
 BLOCK = 60
 """Readings that are looked at together; what is seldom is a fault and no second source."""
@@ -293,15 +286,5 @@ def _alike(sizes: FloatArray) -> bool:
 
 def _values(sample: Sample) -> tuple[float, ...] | None:
     """Give what an instrument reads; None where it is no number on a course of its own."""
-    match sample:
-        case WinchSample():
-            return (*sample.lengths, *sample.tensions)
-        case PressureSample():
-            return (sample.pressure,)
-        case AttitudeSample():
-            return sample.pitch, sample.roll
-        case RangeSample(what='spread' | 'depth'):
-            return (sample.distance,)
-        case VelocitySample():
-            return tuple(map(float, sample.velocity))
-    return None
+    fields = SENSORS[sample.topic].fields
+    return tuple(field.get(sample) for field in fields if field.on_course) or None

@@ -1,8 +1,6 @@
 """Tables on the standard output, with full width if it is not a terminal."""
 
-from typing import Literal
-
-from rich.console import Console
+from rich.console import Console, JustifyMethod
 from rich.table import Table
 
 FILE_COLUMNS = 2000
@@ -18,11 +16,11 @@ def output_console() -> Console:
 def plain_table(
     *headings: str, right: tuple[str, ...] = (), wrapped: tuple[str, ...] = ()
 ) -> Table:
-    """Return a table without a frame, with columns aligned ``right`` or ``wrapped``."""
+    """Return a table without a frame: numbers in columns ``right``, long texts in ``wrapped``."""
     table = Table(box=None, pad_edge=False)
     for heading in headings:
-        side: Literal['left', 'right'] = 'right' if heading in right else 'left'
-        table.add_column(heading, justify=side, no_wrap=heading not in wrapped)
+        justify: JustifyMethod = 'right' if heading in right else 'left'
+        table.add_column(heading, justify=justify, no_wrap=heading not in wrapped)
     return table
 
 

@@ -1,6 +1,6 @@
 """``trawl trim``."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from trawl_ros.records.observables import Observables
     from trawl_ros.solver.advising.rig_changes import RigChange
     from trawl_ros.solver.equilibrium import SteadyState
+    from trawl_ros.solver.trimming.measured import MeasuredAngles
     from trawl_ros.solver.trimming.over_range import RangeTrim
     from trawl_ros.solver.trimming.traded import Traded
 
@@ -25,6 +26,9 @@ KINDS = 'bridles', 'weights', 'floats', 'clump', 'boards'
 """Kinds of changes, those of `trawl_ros.solver.advising.rig_changes`, which is slow to load."""
 
 SPREAD_OR_DEPTH = Number(1.0, 2000.0)
+
+MAX_RELATIVE_MISS = 0.05
+"""Largest relative difference of the trimmed gear from a wanted spread or depth."""
 
 
 def _kinds(
@@ -116,7 +120,7 @@ def command(
     from trawl_ros.solver.advising.rig_changes import changes_of
     from trawl_ros.solver.trimming.traded import Traded
 
-    angles = None
+    angles, wanted = None, None
     if attack is not None and inclination is not None and spread is None and depth is None:
         angles = float(np.radians(attack)), float(np.radians(inclination))
         _refuse_ignored(context, {'warp': warps, 'speed': speeds})
@@ -131,11 +135,17 @@ def command(
     if angles is None:
         assert spread is not None
         assert depth is not None
-        angles, traded = _measured(model, changes, spread, depth, tension_kn, (warp, speed), pitch)
+        wanted, traded = _measured(model, changes, spread, depth, tension_kn, (warp, speed), pitch)
+        angles = wanted.attack, wanted.inclination
         model, changes = traded.model(model), ()
     low, high = speeds or (speed, speed)
     wish = Wish(*angles, float(np.radians(pitch)), warps or (warp, warp), (low, high))
-    points, usable, more = _trimmed(model, changes, wish)
+    points, usable, more, steady = _trimmed(model, changes, wish)
+    if wanted is not None and steady is not None:
+        reached = replace(wanted, observables=steady.observables)
+        if reached.missed_by > MAX_RELATIVE_MISS:
+            click.echo(f'# with these points the gear misses the wanted values: {reached.missed}')
+            usable = False
     traded = Traded((*traded.changes, *more.changes))
     if out is not None:
         write_changed(gear, out, _with_points(traded.gear(record), points))
@@ -179,8 +189,12 @@ def _with_middle(ends: tuple[float, float]) -> list[float]:
 
 def _trimmed(
     model: 'GearModel', changes: 'tuple[RigChange, ...]', wish: Wish
-) -> 'tuple[FloatArray, bool, Traded]':
-    """Print the trim; return its points, True if all of the range is usable, and the changes."""
+) -> 'tuple[FloatArray, bool, Traded, SteadyState | None]':
+    """Find points and print them.
+
+    Returns the points, True if all of the range is usable, the changes, and the steady state of a
+    range that is a single place, if there is one.
+    """
     from trawl_ros.core.errors import NoSteadyState
     from trawl_ros.solver.trim import trim
     from trawl_ros.solver.trimming.over_range import trim_over_range
@@ -195,7 +209,7 @@ def _trimmed(
         else:
             click.echo('\n'.join(points_lines(trimmed.points)))
             click.echo(f'# {state_line(warps[0], speeds[0], trimmed.steady)}')
-            return trimmed.points, True, Traded()
+            return trimmed.points, True, Traded(), trimmed.steady
     traded = Traded()
     with ProgressDisplay(error_console()) as display:
         found = trim_over_range(
@@ -214,7 +228,8 @@ def _trimmed(
     lines.extend(f'at its bound: {coordinate}' for coordinate in found.at_bounds)
     for line in (*lines, closing_line(found), *_advice_lines(found)):
         click.echo(f'# {line}')
-    return found.points, found.usable == len(found.found), traded
+    steady = found.found[0].steady if len(found.found) == 1 else None
+    return found.points, found.usable == len(found.found), traded, steady
 
 
 def _advice_lines(found: 'RangeTrim') -> tuple[str, ...]:
@@ -249,7 +264,7 @@ def _measured(
     tension_kn: float | None,
     place: tuple[float, float],
     pitch: float,
-) -> 'tuple[tuple[float, float], Traded]':
+) -> 'tuple[MeasuredAngles, Traded]':
     from trawl_ros.solver.trimming.measured import angles_from
     from trawl_ros.solver.trimming.traded import Traded, trade_for_place
 
@@ -261,7 +276,7 @@ def _measured(
     click.echo(f'# {found.told(None if tension_kn is None else 1e3 * tension_kn)}')
     if traded.changes:
         click.echo(f'# with {traded.told}')
-    return (found.attack, found.inclination), traded
+    return found, traded
 
 
 def points_lines(points: FloatArray) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from typing_extensions import assert_never
 
 from trawl_ros.control.low_pass import LowPass
 from trawl_ros.core.arrays import FloatArray
@@ -81,17 +82,20 @@ class DeadReckoning:
 
     def take(self, sample: NavigationSample) -> None:
         """Update by a sample; one with NaN is ignored."""
-        if isinstance(sample, HeadingSample):
-            if math.isfinite(sample.heading):
-                self._heading = sample.heading
-                self._heard['heading'] = sample.stamp
-        elif isinstance(sample, FixSample):
-            self._take_fix(sample)
-        elif isinstance(sample, VelocitySample):
-            if np.isfinite(sample.velocity[:2]).all():
-                self._take_velocity(sample)
-        else:
-            self._take_schools(sample)
+        match sample:
+            case HeadingSample():
+                if math.isfinite(sample.heading):
+                    self._heading = sample.heading
+                    self._heard['heading'] = sample.stamp
+            case FixSample():
+                self._take_fix(sample)
+            case VelocitySample():
+                if np.isfinite(sample.velocity[:2]).all():
+                    self._take_velocity(sample)
+            case SchoolsSample():
+                self._take_schools(sample)
+            case _:
+                assert_never(sample)
 
     def _take_fix(self, sample: FixSample) -> None:
         if not (math.isfinite(sample.latitude) and math.isfinite(sample.longitude)):

@@ -222,10 +222,10 @@ def _try_larger(tried: SetsTried, best: Weighed, left: LeftOver) -> None:
     to first order they explain much more; the second too where the best leaves too much over.
     """
     test, own = tried.test, best.refit.wanted
-    beside = max(
-        ((*own, more) for more in test.wanted if more.name not in best.refit.names),
-        key=lambda wanted: penalised_together(test, wanted),
-    )
+    larger = [(*own, more) for more in test.wanted if more.name not in best.refit.names]
+    if not larger:
+        return
+    beside = max(larger, key=lambda wanted: penalised_together(test, wanted))
     for wanted in (likeliest_sets(test, len(own) + 1)[0], beside):
         more = penalised_together(test, wanted) - penalised_together(test, own)
         nested = set(best.refit.names) <= {candidate.name for candidate in wanted}

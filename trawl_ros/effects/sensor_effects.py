@@ -4,36 +4,22 @@ Truth stays unchanged: counters and log show the numbers at which the effects re
 inputs, and sensors show the observables with the effects applied.
 """
 
-from dataclasses import replace
-
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Readings, Situation
 from trawl_ros.effects.effect_set import EffectSet
 from trawl_ros.model.water import Water
+from trawl_ros.records.channels import INPUTS, channel_values, with_channel_values
 from trawl_ros.records.observables import OBSERVABLES
-from trawl_ros.records.samples import (
-    AttitudeSample,
-    PressureSample,
-    RangeSample,
-    Sample,
-    VelocitySample,
-    WinchSample,
-)
+from trawl_ros.records.samples import Sample
 
 ROUNDS = 20
 """Of fixed points; each round leaves a fifth of what is missing, or less."""
 
 HOUR_NS = 3600 * 1_000_000_000
-DEPTHS = {
-    'port': 'port_door_depth',
-    'starboard': 'starboard_door_depth',
-    'sonar': 'net_depth',
-}
-RANGES = {'spread': 'door_spread', 'opening_height': 'vertical_opening'}
 OTHER = {'port': 'starboard', 'starboard': 'port'}
-USUAL = np.array([500.0, 500.0, 2.0])
+USUAL = (500.0, 500.0, 2.0)
 """Warp lengths (m) and speed (m/s) where an instrument does not know the others'."""
 
 
@@ -65,39 +51,18 @@ class SensorEffects:
             return sample
         if self._first is None or sample.stamp < self._first:
             self._first = sample.stamp
-        at = Situation((500.0, 500.0, 2.0), hours=(sample.stamp - self._first) / HOUR_NS)
-        match sample:
-            case WinchSample():
-                lengths = self._instrument(np.array([*sample.lengths, USUAL[2]]), at)[:2]
-                tensions = {
-                    'port_tension': sample.tensions[0],
-                    'starboard_tension': sample.tensions[1],
-                }
-                seen = self._sensors(tensions, at)
-                return replace(
-                    sample,
-                    lengths=(float(lengths[0]), float(lengths[1])),
-                    tensions=(seen['port_tension'], seen['starboard_tension']),
-                )
-            case VelocitySample(over='water'):
-                ahead = self._instrument(np.array([*USUAL[:2], sample.velocity[0]]), at)[2]
-                velocity = np.array([ahead, *sample.velocity[1:]])
-                return replace(sample, velocity=velocity)
-            case PressureSample() if sample.place in DEPTHS:
-                name = DEPTHS[sample.place]
-                depth = self._sensors({name: self._water.depth(sample.pressure)}, at)[name]
-                return replace(sample, pressure=self._water.pressure(depth))
-            case RangeSample() if sample.what in RANGES:
-                name = RANGES[sample.what]
-                distance = self._sensors({name: sample.distance}, at)[name]
-                return replace(sample, distance=distance)
-            case AttitudeSample():
-                names = (f'{sample.side}_pitch', f'{sample.side}_roll')
-                true = dict(zip(names, (sample.pitch, sample.roll), strict=True))
-                pitch, roll = (self._sensors(true, at)[name] for name in names)
-                return replace(sample, pitch=pitch, roll=roll)
-            case _:
-                return sample
+        at = Situation(USUAL, hours=(sample.stamp - self._first) / HOUR_NS)
+        true = channel_values(sample, self._water.depth)
+        shown: Readings = {}
+        if not true.keys().isdisjoint(INPUTS):
+            inputs = [true.get(*usual) for usual in zip(INPUTS, USUAL, strict=True)]
+            shown = dict(
+                zip(INPUTS, map(float, self._instrument(np.array(inputs), at)), strict=True)
+            )
+        if known := {name: true[name] for name in true if name in OBSERVABLES}:
+            shown |= self._sensors(known, at)
+        changed = {name: value for name, value in shown.items() if name in true}
+        return with_channel_values(sample, changed, self._water.pressure)
 
     def _sensors(self, known: Readings, at: Situation) -> Readings:
         """Readings of sensors; each depends on its own observable, and on that of the other side as

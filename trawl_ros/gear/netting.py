@@ -48,7 +48,7 @@ class NettingRecord(Record):
     projected area, under which it bows between its knots; without it bars are straight.
 
     ``normal_drag`` (eq. 23), ``friction`` (eq. 24) and ``knot_drag`` are the coefficients at high
-    Reynolds numbers. They grow as these fall, ``viscous`` times as `trawl_ros.model.net.twine_drag`
+    Reynolds numbers. They grow as these fall, ``viscous`` times as `trawl_ros.model.net.wake`
     has it. ``wake_exchange`` is the exchange of water along a sheet with the water outside
     (`trawl_ros.model.net.wake`), ``lift`` the lift of sheets by the square of their solidity.
     Defaults are those that panels bear out (config/panels).

@@ -8,7 +8,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.instruments.distance import within_limits
 from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
-from trawl_ros.instruments.parameters import AttitudeParameters, DoorParameters, SpreadParameters
+from trawl_ros.instruments.parameters import AngleParameters, DoorParameters, SpreadParameters
 from trawl_ros.instruments.pressure import PressureInstrument
 from trawl_ros.records.samples import AttitudeSample, RangeSample, Sample
 from trawl_ros.records.surroundings import Surroundings
@@ -49,7 +49,7 @@ def off_axis(doors: Doors) -> float:
 class DoorAttitude(Instrument[FloatArray, AttitudeSample]):
     """Inclinometer of a door. Observes the door's orientation, a quaternion (4,)."""
 
-    def __init__(self, side: str, parameters: AttitudeParameters, draws: SeedPlan) -> None:
+    def __init__(self, side: str, parameters: AngleParameters, draws: SeedPlan) -> None:
         errors = {'pitch': parameters.model(), 'roll': parameters.model()}
         super().__init__(f'door/{side}/attitude', parameters.timing(), errors, draws)
         self._side = side

@@ -1,10 +1,11 @@
 """Parameters of the instruments as a file has them, checked on load."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
 from trawl_ros.core.errors import InstrumentError, TrawlError
 from trawl_ros.core.resources import packaged, share_path
@@ -24,10 +25,67 @@ from trawl_ros.instruments.errors.records import (
 )
 from trawl_ros.instruments.errors.timing import Sent, Timed
 from trawl_ros.instruments.sonar.records import SweepRecord
+from trawl_ros.records.registry import Sensor
+from trawl_ros.records.samples import INSTRUMENTS, Sample
 
 BASE = 'base'
 
 
+class AngleParameters(AngleErrors, Timed):
+    """Sensor of angles, which err alike and independently."""
+
+
+class LengthParameters(LengthErrors, Timed):
+    """Sensor of lengths, which err alike and independently."""
+
+
+class ForceParameters(ForceErrors, Timed):
+    """Sensor of forces, which err alike and independently."""
+
+
+ByUnit = AngleParameters | LengthParameters | ForceParameters
+BY_UNIT: dict[str, type[ByUnit]] = {
+    'rad': AngleParameters,
+    'm': LengthParameters,
+    'N': ForceParameters,
+}
+"""Errors of sensors that do nothing but measure observables, by the unit of their channels."""
+
+GROUPS = {
+    'winch_node': 'winch',
+    'door_sensor_node': 'door',
+    'trawl_sonar_node': 'sonar',
+    'vessel_node': 'vessel',
+}
+"""Keys of the instruments of each node."""
+
+RecordT = TypeVar('RecordT', bound=Record)
+
+
+def observing(node: str) -> tuple[Sensor[Sample], ...]:
+    """Return the sensors of a node that do nothing but measure observables."""
+    return tuple(row for row in INSTRUMENTS if row.errors and node in row.published_by)
+
+
+def _with_observing(node: str) -> Callable[[type[RecordT]], type[RecordT]]:
+    """Add the errors of the sensors of a node that do nothing but measure observables."""
+    keys = {
+        row.errors: (BY_UNIT[row.fields[0].channel.unit] | None, None)
+        for row in observing(node)
+        if row.fields[0].channel
+    }
+
+    def with_keys(cls: type[RecordT]) -> type[RecordT]:
+        # Pydantic's options are keywords beside those of the fields, which mypy cannot tell apart.
+        model: type[RecordT] = create_model(  # type: ignore[call-overload]  # as said above
+            cls.__name__, __base__=cls, __doc__=cls.__doc__, __module__=cls.__module__, **keys
+        )
+        return model
+
+    return with_keys
+
+
+@_with_observing('winch_node')
 class WinchParameters(Timed):
     """Winches: counter, pay-out speed and load cell; sides err independently.
 
@@ -47,10 +105,6 @@ class WinchParameters(Timed):
 
 class PressureParameters(PressureErrors, Timed):
     """Pressure sensor."""
-
-
-class AttitudeParameters(AngleErrors, Timed):
-    """Inclinometer; pitch and roll err alike and independently."""
 
 
 class LimitedLength(LengthErrors):
@@ -119,14 +173,6 @@ class VelocityParameters(Timed):
     yaw_rate: TurnErrors
 
 
-class FixParameters(LengthErrors, Timed):
-    """Position sensor; east and north err alike and independently."""
-
-
-class HeadingParameters(AngleErrors, Timed):
-    """Compass."""
-
-
 class SpreadParameters(RangeParameters):
     """Acoustic spread sensor from door to door.
 
@@ -139,11 +185,12 @@ class SpreadParameters(RangeParameters):
     beam_half_angle_deg: Annotated[float, Field(gt=0, le=180)] = 180.0
 
 
+@_with_observing('door_sensor_node')
 class DoorParameters(Record):
     """Sensors of the doors, alike on both."""
 
     pressure: PressureParameters
-    attitude: AttitudeParameters
+    attitude: AngleParameters
     spread: SpreadParameters
 
 
@@ -178,6 +225,7 @@ class BottomParameters(RangeParameters):
     assumed_sound_speed_m_s: SoundSpeed
 
 
+@_with_observing('trawl_sonar_node')
 class SonarParameters(Record):
     """Trawl sonar on the headrope, with the other instruments in its housing."""
 
@@ -227,6 +275,7 @@ class FishSonarParameters(Timed):
     tilt: AngleErrors
 
 
+@_with_observing('vessel_node')
 class VesselParameters(Record):
     """Sensors of the ship, and the datum of ``map``.
 
@@ -239,8 +288,8 @@ class VesselParameters(Record):
     draught_m: Annotated[float, Field(ge=0, le=30)]
     velocity_water: VelocityParameters
     velocity_ground: VelocityParameters
-    fix: FixParameters
-    heading: HeadingParameters
+    fix: LengthParameters
+    heading: AngleParameters
     echo_sounder: EchoSounderParameters
     fish_sonar: FishSonarParameters
 

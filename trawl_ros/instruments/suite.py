@@ -6,6 +6,7 @@ from trawl_ros.instruments.doors import DoorInstruments
 from trawl_ros.instruments.errors.fault_plan import FaultPlan, PlannedFault
 from trawl_ros.instruments.errors.faults import FaultPanel, Faulty
 from trawl_ros.instruments.errors.instrument import SeedPlan
+from trawl_ros.instruments.observing import ObservingInstruments
 from trawl_ros.instruments.parameters import InstrumentParameters
 from trawl_ros.instruments.trawl_sonar import SonarInstruments
 from trawl_ros.instruments.vessel import VesselInstruments
@@ -62,7 +63,9 @@ class InstrumentSuite:
         self.sonar = SonarInstruments(parameters.sonar, draws, surroundings=surroundings)
         self.vessel = VesselInstruments(parameters.vessel, draws, surroundings=surroundings)
 
-        groups = (self.winch, self.door, self.sonar, self.vessel)
+        self.observing = ObservingInstruments(parameters, draws)
+
+        groups = (self.winch, self.door, self.sonar, self.vessel, self.observing)
         sensors: list[Faulty] = []
         for group in groups:
             sensors += group.instruments
@@ -73,4 +76,5 @@ class InstrumentSuite:
         """Return the samples that are due at one instant, always in the same order."""
         self._plan.follow(truth.stamp)
         groups = (self.winch, self.door, self.sonar, self.vessel)
-        return [sample for group in groups for sample in group.observe(truth)]
+        samples = [sample for group in groups for sample in group.observe(truth)]
+        return samples + self.observing.observe(truth.observables, truth.stamp)

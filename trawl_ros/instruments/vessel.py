@@ -11,8 +11,8 @@ from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.fish_sonar import FishSonar
 from trawl_ros.instruments.parameters import (
-    FixParameters,
-    HeadingParameters,
+    AngleParameters,
+    LengthParameters,
     VelocityParameters,
     VesselParameters,
 )
@@ -63,7 +63,7 @@ class GpsVelocity(_Velocity):
 class GpsFix(Instrument[FloatArray, FixSample]):
     """GPS position on Earth. Observes the ship's position (3,) in ``map``."""
 
-    def __init__(self, parameters: FixParameters, datum: Datum, draws: SeedPlan) -> None:
+    def __init__(self, parameters: LengthParameters, datum: Datum, draws: SeedPlan) -> None:
         errors = {'east': parameters.model(), 'north': parameters.model()}
         super().__init__('vessel/fix', parameters.timing(), errors, draws)
         self._datum = datum
@@ -83,7 +83,7 @@ class GpsFix(Instrument[FloatArray, FixSample]):
 class Heading(Instrument[float, HeadingSample]):
     """Compass. Observes the heading as ENU yaw (rad) and reports it within ±π."""
 
-    def __init__(self, parameters: HeadingParameters, draws: SeedPlan) -> None:
+    def __init__(self, parameters: AngleParameters, draws: SeedPlan) -> None:
         super().__init__(
             'vessel/heading', parameters.timing(), {'heading': parameters.model()}, draws
         )

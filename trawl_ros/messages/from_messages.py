@@ -13,24 +13,22 @@ import numpy as np
 
 from trawl_ros.core.errors import MessageError
 from trawl_ros.core.foreign import short
-from trawl_ros.messages.pieces import ABSENT, read_angles, read_vector, winch_columns
+from trawl_ros.messages.pieces import ABSENT, ANGLES, read_angles, read_vector, winch_columns
 from trawl_ros.messages.point_clouds import read_point_cloud
 from trawl_ros.messages.stamps import stamp_of
+from trawl_ros.records.registry import Sensor, changed, with_numbers
 from trawl_ros.records.samples import (
-    AttitudeSample,
+    SENSORS,
     FixSample,
-    HeadingSample,
-    PressureSample,
-    RangeSample,
     Sample,
     SchoolsSample,
     SonarImageSample,
     SonarPointsSample,
     SonarScanSample,
-    VelocitySample,
     WinchSample,
 )
-from trawl_ros.records.topics import RANGES
+
+Row = Sensor[Sample]
 
 
 def to_sample(topic: str, message: Any) -> Sample:
@@ -41,12 +39,12 @@ def to_sample(topic: str, message: Any) -> Sample:
     MessageError
         If the topic carries no sample, or the message contradicts the topic.
     """
-    if topic not in _READERS:
+    if topic not in SENSORS:
         raise MessageError(
             f'{topic}: not a topic with samples; expected one of {", ".join(SAMPLE_TOPICS)}'
         )
     try:
-        return _READERS[topic](topic, message)
+        return _READERS[SENSORS[topic].type](SENSORS[topic], message)
     except MessageError:
         raise
     # Of another type, or of this one as somebody else defines it.
@@ -57,62 +55,60 @@ def to_sample(topic: str, message: Any) -> Sample:
         ) from reason
 
 
-def _winch_sample(topic: str, message: Any) -> WinchSample:
-    lengths, speeds, tensions = winch_columns(topic, message)
+def _winch_sample(row: Row, message: Any) -> WinchSample:
+    lengths, speeds, tensions = winch_columns(row.name, message)
     return WinchSample(stamp_of(message), lengths, speeds, tensions)
 
 
-def _pressure(topic: str, message: Any) -> PressureSample:
-    place = 'sonar' if topic == 'sonar/pressure' else topic.split('/')[1]
-    std = _deviation(topic, message.variance)
-    return PressureSample(stamp_of(message), place, float(message.fluid_pressure), std)
+def _pressure(row: Row, message: Any) -> Sample:
+    std = _deviation(row.name, message.variance)
+    return changed(
+        row.blank, stamp=stamp_of(message), pressure=float(message.fluid_pressure), std=std
+    )
 
 
-def _attitude(topic: str, message: Any) -> AttitudeSample:
-    side = topic.split('/')[1]
-    roll, pitch, _, std = _imu(topic, message, 0)
-    return AttitudeSample(stamp_of(message), side, pitch, roll, std)
-
-
-def _heading(topic: str, message: Any) -> HeadingSample:
-    _, _, yaw, std = _imu(topic, message, 8)
-    return HeadingSample(stamp_of(message), yaw, std)
-
-
-def _imu(topic: str, message: Any, entry: int) -> tuple[float, float, float, float]:
-    """Roll, pitch, yaw, and the standard deviation in one diagonal entry of the covariance."""
+def _orientation(row: Row, message: Any) -> Any:
+    blank = changed(row.blank, stamp=stamp_of(message))
     if message.orientation_covariance[0] == ABSENT:
-        return math.nan, math.nan, math.nan, math.nan
-    std = _deviation(topic, message.orientation_covariance[entry])
-    return *read_angles(topic, message.orientation), std
+        return blank
+    angles = dict(zip(ANGLES, read_angles(row.name, message.orientation), strict=True))
+    measured = with_numbers(blank, {field: angles[field.at] for field in row.fields})
+    entry = 4 * min(ANGLES.index(field.at) for field in row.fields)
+    return changed(measured, std=_deviation(row.name, message.orientation_covariance[entry]))
 
 
-def _range(topic: str, message: Any) -> RangeSample:
-    # Range has had no variance before ROS 2 Iron; 0 stands for unknown in those that do.
-    std = _deviation(topic, getattr(message, 'variance', 0.0))
-    return RangeSample(
+def _vector(row: Row, message: Any) -> Any:
+    blank = changed(row.blank, stamp=stamp_of(message))
+    return with_numbers(
+        blank, {field: float(getattr(message.vector, field.at)) for field in row.fields}
+    )
+
+
+def _range(row: Row, message: Any) -> Sample:
+    return changed(
+        row.blank,
         stamp=stamp_of(message),
-        what=_DISTANCES[topic],
         distance=float(message.range),
-        std=std,
+        # Range has had no variance before ROS 2 Iron; 0 stands for unknown in those that do.
+        std=_deviation(row.name, getattr(message, 'variance', 0.0)),
         min_range=float(message.min_range),
         max_range=float(message.max_range),
     )
 
 
-def _sonar_image(topic: str, message: Any) -> SonarImageSample:
+def _sonar_image(row: Row, message: Any) -> SonarImageSample:
     beams, cells, step = int(message.height), int(message.width), int(message.step)
     data = np.asarray(message.data, dtype=np.uint8)
     if message.encoding != 'mono8' or step < cells or len(data) != beams * step:
         raise MessageError(
-            f'{topic}: {len(data)} bytes of {message.encoding}, {beams} rows of {step} bytes; '
+            f'{row.name}: {len(data)} bytes of {message.encoding}, {beams} rows of {step} bytes; '
             'expected mono8 and as many bytes as rows have'
         )
     image = data.reshape(beams, step)[:, :cells]
     return SonarImageSample(stamp_of(message), image)
 
 
-def _sonar_scan(topic: str, message: Any) -> SonarScanSample:
+def _sonar_scan(row: Row, message: Any) -> SonarScanSample:
     return SonarScanSample(
         stamp=stamp_of(message),
         ranges=np.asarray(message.ranges, dtype=float),
@@ -125,33 +121,34 @@ def _sonar_scan(topic: str, message: Any) -> SonarScanSample:
     )
 
 
-def _sonar_points(topic: str, message: Any) -> SonarPointsSample:
-    points = read_point_cloud(topic, message, ('x', 'y', 'z', 'intensity'))
+def _sonar_points(row: Row, message: Any) -> SonarPointsSample:
+    points = read_point_cloud(row.name, message, ('x', 'y', 'z', 'intensity'))
     return SonarPointsSample(stamp_of(message), points)
 
 
-def _seen_schools(topic: str, message: Any) -> SchoolsSample:
+def _seen_schools(row: Row, message: Any) -> SchoolsSample:
     positions = [read_vector(pose.position) for pose in message.poses]
     return SchoolsSample(stamp_of(message), np.array(positions).reshape(-1, 3))
 
 
-def _velocity(topic: str, message: Any) -> VelocitySample:
-    over = topic.removeprefix('vessel/velocity_')
-    twist = message.twist
-    return VelocitySample(
-        stamp_of(message), over, read_vector(twist.linear), float(twist.angular.z)
+def _velocity(row: Row, message: Any) -> Sample:
+    return changed(
+        row.blank,
+        stamp=stamp_of(message),
+        velocity=read_vector(message.twist.linear),
+        yaw_rate=float(message.twist.angular.z),
     )
 
 
-def _fix(topic: str, message: Any) -> FixSample:
+def _fix(row: Row, message: Any) -> FixSample:
     if message.status.status < 0:
         return FixSample(stamp_of(message), math.nan, math.nan, math.nan)
     if not (abs(message.latitude) <= 90.0 and abs(message.longitude) <= 360.0):
         raise MessageError(
-            f'{topic}: latitude {message.latitude:g}, longitude {message.longitude:g} with a '
+            f'{row.name}: latitude {message.latitude:g}, longitude {message.longitude:g} with a '
             'valid fix; expected degrees within ±90 and ±360'
         )
-    std = _deviation(topic, message.position_covariance[0])
+    std = _deviation(row.name, message.position_covariance[0])
     return FixSample(stamp_of(message), float(message.latitude), float(message.longitude), std)
 
 
@@ -161,30 +158,20 @@ def _deviation(topic: str, variance: float) -> float:
     return math.sqrt(variance)
 
 
-_DISTANCES = {topic: what for what, topic in RANGES.items()}
-
-_READERS: dict[str, Callable[[str, Any], Sample]] = {
-    'winch/joint_states': _winch_sample,
-    'door/port/pressure': _pressure,
-    'door/starboard/pressure': _pressure,
-    'door/port/attitude': _attitude,
-    'door/starboard/attitude': _attitude,
-    'door/spread': _range,
-    'sonar/pressure': _pressure,
-    'sonar/opening_height': _range,
-    'sonar/opening_width': _range,
-    'sonar/bottom': _range,
-    'sonar/image': _sonar_image,
-    'sonar/scan': _sonar_scan,
-    'sonar/points': _sonar_points,
-    'vessel/velocity_water': _velocity,
-    'vessel/velocity_ground': _velocity,
-    'vessel/heading': _heading,
-    'vessel/fix': _fix,
-    'vessel/echo_sounder/depth': _range,
-    'vessel/echo_sounder/school': _range,
-    'vessel/fish_sonar': _seen_schools,
+_READERS: dict[str, Callable[[Row, Any], Sample]] = {
+    'sensor_msgs/msg/JointState': _winch_sample,
+    'sensor_msgs/msg/FluidPressure': _pressure,
+    'sensor_msgs/msg/Imu': _orientation,
+    'sensor_msgs/msg/Range': _range,
+    'sensor_msgs/msg/NavSatFix': _fix,
+    'sensor_msgs/msg/Image': _sonar_image,
+    'sensor_msgs/msg/LaserScan': _sonar_scan,
+    'sensor_msgs/msg/PointCloud2': _sonar_points,
+    'geometry_msgs/msg/TwistStamped': _velocity,
+    'geometry_msgs/msg/Vector3Stamped': _vector,
+    'geometry_msgs/msg/PoseArray': _seen_schools,
 }
+"""Readers by type of message."""
 
-SAMPLE_TOPICS = tuple(_READERS)
+SAMPLE_TOPICS = tuple(SENSORS)
 """Relative names of the topics whose messages are samples."""

@@ -18,6 +18,9 @@ from trawl_ros.records.topics import TOPICS, WINCH_NAMES
 
 TopicMessage = tuple[str, Any]
 
+ANGLES = ('roll', 'pitch', 'yaw')
+"""Angles of an orientation, in order."""
+
 _IN_ORDER = list(WINCH_NAMES)
 
 UNKNOWN_VARIANCE = 1e6

@@ -1,6 +1,7 @@
 """Conversion of samples into messages, each as (relative topic name, message)."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,10 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 from trawl_ros.messages import pieces
 from trawl_ros.messages.pieces import UNKNOWN_VARIANCE, TopicMessage
 from trawl_ros.messages.point_clouds import point_cloud
+from trawl_ros.records.registry import Sensor
 from trawl_ros.records.samples import (
-    AttitudeSample,
+    SENSORS,
     FixSample,
-    HeadingSample,
     PressureSample,
     RangeSample,
     Sample,
@@ -23,78 +24,50 @@ from trawl_ros.records.samples import (
     VelocitySample,
     WinchSample,
 )
-from trawl_ros.records.topics import RANGES
 
-FIELDS_OF_VIEW = {
-    'spread': 0.35,
-    'opening_height': 0.02,
-    'opening_width': 0.02,
-    'bottom': 0.26,
-    'depth': 0.12,
-    'school': 0.12,
-}
-"""Beam widths (rad) of the sensors behind the ranges, for display: about 20° for an acoustic
-door sensor, 15° for a sounder on the headrope, 7° for a ship's, 1° for a trawl sonar."""
+Row = Sensor[Sample]
 
 
 def sample_message(sample: Sample) -> TopicMessage:
     """Convert a sample into the message of its topic."""
-    match sample:
-        case WinchSample():
-            return _winch_sample(sample)
-        case PressureSample():
-            return _pressure(sample)
-        case AttitudeSample():
-            return _attitude(sample)
-        case RangeSample():
-            return _range(sample)
-        case VelocitySample():
-            return _velocity(sample)
-        case HeadingSample():
-            return _heading(sample)
-        case FixSample():
-            return _fix(sample)
-        case SonarImageSample():
-            return _sonar_image(sample)
-        case SonarScanSample():
-            return _sonar_scan(sample)
-        case SonarPointsSample():
-            return _sonar_points(sample)
-        case SchoolsSample():
-            return _seen_schools(sample)
+    row = SENSORS[sample.topic]
+    return row.name, _WRITERS[row.type](row, sample)
 
 
-def _winch_sample(sample: WinchSample) -> TopicMessage:
-    topic = 'winch/joint_states'
+def _winch_sample(row: Row, sample: WinchSample) -> Any:
     columns = (sample.lengths, sample.speeds, sample.tensions)
-    return topic, pieces.joint_state(sample.stamp, topic, *columns)
+    return pieces.joint_state(sample.stamp, row.name, *columns)
 
 
-def _pressure(sample: PressureSample) -> TopicMessage:
-    topic = 'sonar/pressure' if sample.place == 'sonar' else f'door/{sample.place}/pressure'
-    return topic, ros.sensor_msgs__msg__FluidPressure(
-        pieces.topic_header(sample.stamp, topic), float(sample.pressure), float(sample.std) ** 2
+def _pressure(row: Row, sample: PressureSample) -> Any:
+    return ros.sensor_msgs__msg__FluidPressure(
+        pieces.topic_header(sample.stamp, row.name), float(sample.pressure), float(sample.std) ** 2
     )
 
 
-def _attitude(sample: AttitudeSample) -> TopicMessage:
-    topic = f'door/{sample.side}/attitude'
-    variances = (sample.std**2, sample.std**2, UNKNOWN_VARIANCE)
-    return topic, pieces.imu(sample.stamp, topic, (sample.roll, sample.pitch, 0.0), variances)
+def _orientation(row: Row, sample: Any) -> Any:
+    angles = {field.at: field.get(sample) for field in row.fields}
+    roll, pitch, yaw = (angles.get(name, 0.0) for name in pieces.ANGLES)
+    said = (sample.std**2 if name in angles else UNKNOWN_VARIANCE for name in pieces.ANGLES)
+    roll_variance, pitch_variance, yaw_variance = said
+    return pieces.imu(
+        sample.stamp, row.name, (roll, pitch, yaw), (roll_variance, pitch_variance, yaw_variance)
+    )
 
 
-def _heading(sample: HeadingSample) -> TopicMessage:
-    topic = 'vessel/heading'
-    variances = (UNKNOWN_VARIANCE, UNKNOWN_VARIANCE, sample.std**2)
-    return topic, pieces.imu(sample.stamp, topic, (0.0, 0.0, sample.heading), variances)
+def _vector(row: Row, sample: Any) -> Any:
+    parts = {field.at: field.get(sample) for field in row.fields}
+    return ros.geometry_msgs__msg__Vector3Stamped(
+        pieces.topic_header(sample.stamp, row.name),
+        pieces.vector([parts.get(axis, 0.0) for axis in 'xyz']),
+    )
 
 
-def _range(sample: RangeSample) -> TopicMessage:
-    topic = RANGES[sample.what]
-    return topic, ros.sensor_msgs__msg__Range(
-        header=pieces.topic_header(sample.stamp, topic),
+def _range(row: Row, sample: RangeSample) -> Any:
+    return ros.sensor_msgs__msg__Range(
+        header=pieces.topic_header(sample.stamp, row.name),
         radiation_type=ros.sensor_msgs__msg__Range.ULTRASOUND,
-        field_of_view=FIELDS_OF_VIEW[sample.what],
+        field_of_view=row.beam_width,
         min_range=float(sample.min_range),
         max_range=float(sample.max_range),
         range=float(sample.distance),
@@ -102,11 +75,10 @@ def _range(sample: RangeSample) -> TopicMessage:
     )
 
 
-def _sonar_image(sample: SonarImageSample) -> TopicMessage:
-    topic = 'sonar/image'
+def _sonar_image(row: Row, sample: SonarImageSample) -> Any:
     beams, cells = sample.image.shape
-    return topic, ros.sensor_msgs__msg__Image(
-        header=pieces.topic_header(sample.stamp, topic),
+    return ros.sensor_msgs__msg__Image(
+        header=pieces.topic_header(sample.stamp, row.name),
         height=beams,
         width=cells,
         encoding='mono8',
@@ -116,11 +88,10 @@ def _sonar_image(sample: SonarImageSample) -> TopicMessage:
     )
 
 
-def _sonar_scan(sample: SonarScanSample) -> TopicMessage:
-    topic = 'sonar/scan'
+def _sonar_scan(row: Row, sample: SonarScanSample) -> Any:
     beams = len(sample.ranges)
-    return topic, ros.sensor_msgs__msg__LaserScan(
-        header=pieces.topic_header(sample.stamp, topic),
+    return ros.sensor_msgs__msg__LaserScan(
+        header=pieces.topic_header(sample.stamp, row.name),
         angle_min=float(sample.angle_min),
         angle_max=float(sample.angle_min + (beams - 1) * sample.angle_increment),
         angle_increment=float(sample.angle_increment),
@@ -133,34 +104,30 @@ def _sonar_scan(sample: SonarScanSample) -> TopicMessage:
     )
 
 
-def _sonar_points(sample: SonarPointsSample) -> TopicMessage:
-    topic = 'sonar/points'
+def _sonar_points(row: Row, sample: SonarPointsSample) -> Any:
     columns = zip(('x', 'y', 'z', 'intensity'), sample.points.reshape(-1, 4).T, strict=True)
-    return topic, point_cloud(pieces.topic_header(sample.stamp, topic), dict(columns))
+    return point_cloud(pieces.topic_header(sample.stamp, row.name), dict(columns))
 
 
-def _seen_schools(sample: SchoolsSample) -> TopicMessage:
-    topic = 'vessel/fish_sonar'
+def _seen_schools(row: Row, sample: SchoolsSample) -> Any:
     poses = [pieces.pose(position, (0.0, 0.0, 0.0, 1.0)) for position in sample.positions]
-    return topic, ros.geometry_msgs__msg__PoseArray(pieces.topic_header(sample.stamp, topic), poses)
+    return ros.geometry_msgs__msg__PoseArray(pieces.topic_header(sample.stamp, row.name), poses)
 
 
-def _velocity(sample: VelocitySample) -> TopicMessage:
-    topic = f'vessel/velocity_{sample.over}'
-    return topic, ros.geometry_msgs__msg__TwistStamped(
-        pieces.topic_header(sample.stamp, topic),
+def _velocity(row: Row, sample: VelocitySample) -> Any:
+    return ros.geometry_msgs__msg__TwistStamped(
+        pieces.topic_header(sample.stamp, row.name),
         pieces.twist(sample.velocity, (0.0, 0.0, sample.yaw_rate)),
     )
 
 
-def _fix(sample: FixSample) -> TopicMessage:
-    topic = 'vessel/fix'
+def _fix(row: Row, sample: FixSample) -> Any:
     # Any, since the stubs of rosbags expect the status of an older distribution here.
     status: Any = ros.sensor_msgs__msg__NavSatStatus
     fixed = math.isfinite(sample.latitude) and math.isfinite(sample.longitude)
     variances = (sample.std**2, sample.std**2, UNKNOWN_VARIANCE)
-    return topic, ros.sensor_msgs__msg__NavSatFix(
-        header=pieces.topic_header(sample.stamp, topic),
+    return ros.sensor_msgs__msg__NavSatFix(
+        header=pieces.topic_header(sample.stamp, row.name),
         status=status(status.STATUS_FIX if fixed else status.STATUS_NO_FIX, status.SERVICE_GPS),
         latitude=float(sample.latitude),
         longitude=float(sample.longitude),
@@ -168,3 +135,19 @@ def _fix(sample: FixSample) -> TopicMessage:
         position_covariance=np.diag(variances).ravel(),
         position_covariance_type=ros.sensor_msgs__msg__NavSatFix.COVARIANCE_TYPE_DIAGONAL_KNOWN,
     )
+
+
+_WRITERS: dict[str, Callable[[Row, Any], Any]] = {
+    'sensor_msgs/msg/JointState': _winch_sample,
+    'sensor_msgs/msg/FluidPressure': _pressure,
+    'sensor_msgs/msg/Imu': _orientation,
+    'sensor_msgs/msg/Range': _range,
+    'sensor_msgs/msg/NavSatFix': _fix,
+    'sensor_msgs/msg/Image': _sonar_image,
+    'sensor_msgs/msg/LaserScan': _sonar_scan,
+    'sensor_msgs/msg/PointCloud2': _sonar_points,
+    'geometry_msgs/msg/TwistStamped': _velocity,
+    'geometry_msgs/msg/Vector3Stamped': _vector,
+    'geometry_msgs/msg/PoseArray': _seen_schools,
+}
+"""Writers by type of message."""

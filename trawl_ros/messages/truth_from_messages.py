@@ -5,10 +5,17 @@ from typing import Any
 
 import numpy as np
 
-from trawl_ros.messages.pieces import read_angles, read_orientation, read_vector, winch_columns
+from trawl_ros.messages.pieces import (
+    joint_column,
+    read_angles,
+    read_orientation,
+    read_vector,
+    winch_columns,
+)
 from trawl_ros.messages.point_clouds import read_point_cloud
 from trawl_ros.messages.rotations import about_z
 from trawl_ros.messages.truth_to_messages import SCHOOL_FIELDS
+from trawl_ros.records.observables import OBSERVABLES, Observables
 from trawl_ros.records.truth import (
     DoorTruth,
     NetTruth,
@@ -83,6 +90,12 @@ def seabed_truth(depths: Any) -> SeabedTruth:
     """Read the depth of the seabed from ``truth/seabed``."""
     under_ship, under_headrope, _ = read_vector(depths.vector)
     return SeabedTruth(float(under_ship), float(under_headrope))
+
+
+def observables_truth(joint_state: Any) -> Observables:
+    """Read the observables from ``truth/observables``; what is not there is NaN."""
+    values = joint_column('truth/observables', joint_state, 'position')
+    return Observables(**{name: values.get(name, math.nan) for name in OBSERVABLES})
 
 
 def vessel_truth(odometry: Any, velocity_water: Any) -> VesselTruth:

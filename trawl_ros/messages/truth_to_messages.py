@@ -11,6 +11,7 @@ from trawl_ros.messages.pieces import TopicMessage, vector
 from trawl_ros.messages.point_clouds import point_cloud
 from trawl_ros.messages.rotations import about_z, to_quaternion
 from trawl_ros.messages.stamps import header, to_time
+from trawl_ros.records.observables import OBSERVABLES, Observables
 from trawl_ros.records.topics import DOOR_FRAMES, MAP, SONAR, TRANSFORMS, VESSEL
 from trawl_ros.records.truth import (
     SIDES,
@@ -42,6 +43,8 @@ def truth_messages(truth: Truth) -> list[TopicMessage]:
     messages += _vessel(truth.stamp, truth.vessel)
     messages.append(_schools(truth.stamp, truth.schools))
     messages.append(_seabed(truth.stamp, truth.seabed))
+    if truth.observables is not None:
+        messages.append(_observables(truth.stamp, truth.observables))
     return messages
 
 
@@ -166,6 +169,17 @@ def _seabed(stamp: int, seabed: SeabedTruth) -> TopicMessage:
     topic = 'truth/seabed'
     depths = pieces.vector((seabed.under_ship, seabed.under_headrope, 0.0))
     return topic, ros.geometry_msgs__msg__Vector3Stamped(pieces.topic_header(stamp, topic), depths)
+
+
+def _observables(stamp: int, observables: Observables) -> TopicMessage:
+    topic = 'truth/observables'
+    return topic, ros.sensor_msgs__msg__JointState(
+        pieces.topic_header(stamp, topic),
+        list(OBSERVABLES),
+        observables.array(),
+        np.zeros(0),
+        np.zeros(0),
+    )
 
 
 def transforms_message(truth: Truth) -> TopicMessage:

@@ -22,7 +22,7 @@ from trawl_ros.model.net.catch import CodendCatch, place_catch
 from trawl_ros.model.net.kite_nodes import KiteNodes
 from trawl_ros.model.net.netting import build_net
 from trawl_ros.model.net.sheets import NetSheets, sheets_of
-from trawl_ros.model.net.twine_drag import viscous, viscous_knots
+from trawl_ros.model.net.wake import viscous, viscous_knots
 from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.pattern import SparsityPattern, build_pattern
 from trawl_ros.model.rigging import (

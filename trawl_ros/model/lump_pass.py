@@ -19,8 +19,21 @@ from trawl_ros.model.bar_pass import WaterTable
 from trawl_ros.model.compiled import compiled, inner
 from trawl_ros.model.current import current_at
 
-CLOSED = 1e-4
+MIN_SHEET_AREA_M2 = 1e-4
 """Area (m²) below which a sheet counts as closed, so that its direction has a derivative."""
+
+
+@inner
+def flow_past(
+    x: FloatArray, v: FloatArray, n: int, water: WaterTable, flow: FloatArray, shear: FloatArray
+) -> float:
+    """Fill in the flow (3,) past a node and its change per height; return its softened square."""
+    current_at(water[3], water[4], x[n, 2], flow, shear)
+    square: float = STILL**2 + 0 * x[n, 2]
+    for i in range(3):
+        flow[i] -= v[n, i]
+        square += flow[i] ** 2
+    return square
 
 
 @compiled
@@ -35,16 +48,11 @@ def fill_lump_forces(
     force: FloatArray,
 ) -> None:
     """Fill in drag, weight and buoyancy (n, 3) of the lumps."""
-    density, gradient, gravity, knots, cubics = water
+    density, gradient, gravity, _, _ = water
     flow, shear = np.empty(3, x.dtype), np.empty(3)
     for n in range(len(force)):
         here = density - gradient * x[n, 2]
-        current_at(knots, cubics, x[n, 2], flow, shear)
-        square = STILL**2 + 0 * here
-        for i in range(3):
-            flow[i] -= v[n, i]
-            square += flow[i] ** 2
-        speed = np.sqrt(square)
+        speed = np.sqrt(flow_past(x, v, n, water, flow, shear))
         factor = 0.5 * here * (drag_area[n] * speed + viscous_area[n] * np.sqrt(speed))
         for i in range(3):
             force[n, i] = factor * flow[i]
@@ -63,16 +71,12 @@ def fill_lump_slopes(
     damping: FloatArray,
 ) -> None:
     """Fill in K = -∂F/∂x and C = -∂F/∂v (n, 3, 3) of the lumps."""
-    density, gradient, gravity, knots, cubics = water
+    density, gradient, gravity, _, _ = water
     flow, shear = np.empty(3), np.empty(3)
     stiffness[:] = 0.0
     for n in range(len(stiffness)):
         here = density - gradient * x[n, 2]
-        current_at(knots, cubics, x[n, 2], flow, shear)
-        square = STILL**2
-        for i in range(3):
-            flow[i] -= v[n, i]
-            square += flow[i] ** 2
+        square = flow_past(x, v, n, water, flow, shear)
         speed = np.sqrt(square)
         viscous = viscous_area[n] * np.sqrt(speed)
         factor = 0.5 * here * (drag_area[n] * speed + viscous)
@@ -122,19 +126,17 @@ def add_sheet_forces(
     total: FloatArray,
 ) -> None:
     """Add the lift of sheets to the nodes ``around[:, 0]`` that they belong to."""
-    density, gradient, _, knots, cubics = water
+    density, gradient, _, _, _ = water
     flow, shear = np.empty(3, x.dtype), np.empty(3)
     long, wide, area = np.empty(3, x.dtype), np.empty(3, x.dtype), np.empty(3, x.dtype)
     for n in range(len(around)):
         node = around[n, 0]
         area_at(x, around, weights, n, long, wide, area)
-        current_at(knots, cubics, x[node, 2], flow, shear)
+        square = flow_past(x, v, node, water, flow, shear)
         through = 0 * x[node, 2]
-        square, size = STILL**2 + through, CLOSED**2 + through
+        size = MIN_SHEET_AREA_M2**2 + through
         for i in range(3):
-            flow[i] -= v[node, i]
             through += flow[i] * area[i]
-            square += flow[i] ** 2
             size += area[i] ** 2
         speed, size = np.sqrt(square), np.sqrt(size)
         solidity = twine[n] ** 2 / (size**2 + twine[n] ** 2)
@@ -160,7 +162,7 @@ def add_sheet_slopes(
     """The same, with K = -∂F/∂x and C = -∂F/∂v of the sheets; ``slots`` (n, m, 3, 3) are those of
     the blocks of their own node's force by the places of all nodes around it.
     """
-    density, gradient, _, knots, cubics = water
+    density, gradient, _, _, _ = water
     flow, shear, force = np.empty(3), np.empty(3), np.empty(3)
     long, wide, area = np.empty(3), np.empty(3), np.empty(3)
     by_area, by_flow, turned = np.empty((3, 3)), np.empty((3, 3)), np.empty(3)
@@ -168,12 +170,10 @@ def add_sheet_slopes(
         node = around[n, 0]
         area_at(x, around, weights, n, long, wide, area)
         here = density - gradient * x[node, 2]
-        current_at(knots, cubics, x[node, 2], flow, shear)
-        through, square, size = 0.0, STILL**2, CLOSED**2
+        square = flow_past(x, v, node, water, flow, shear)
+        through, size = 0.0, MIN_SHEET_AREA_M2**2
         for i in range(3):
-            flow[i] -= v[node, i]
             through += flow[i] * area[i]
-            square += flow[i] ** 2
             size += area[i] ** 2
         speed, size = np.sqrt(square), np.sqrt(size)
         square_sum = size**2 + twine[n] ** 2

@@ -25,9 +25,8 @@ from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import recorder_profile
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.runtime.stamping import header_stamp
-from trawl_ros.records.topics import CLOCK, COMMANDS, ESTIMATES, INSTRUMENTS, SYNC, TRUTH, absolute
+from trawl_ros.records.topics import CLOCK, CONTRACT, INSTRUMENTS, SYNC, TRUTH, absolute
 
-CONTRACT = (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS)
 NEVER = (CLOCK.name, '/rosout', '/parameter_events')
 
 FLUSH_S = 0.4

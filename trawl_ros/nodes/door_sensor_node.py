@@ -17,17 +17,7 @@ PORT, STARBOARD = 'truth/door/port/odom', 'truth/door/starboard/odom'
 class DoorSensorNode(InstrumentNode):
     """Reports ``door/{port,starboard}/{pressure,attitude}`` and ``door/spread``."""
 
-    TRUTH: ClassVar = (PORT, STARBOARD)
-    SAMPLES: ClassVar = (
-        'door/port/pressure',
-        'door/port/attitude',
-        'door/starboard/pressure',
-        'door/starboard/attitude',
-        'door/spread',
-    )
-
-    def __init__(self, **kwargs: Any) -> None:
-        super().__init__('door_sensor_node', **kwargs)
+    NAME: ClassVar = 'door_sensor_node'
 
     def set_up(self, setup: Setup) -> Sequence[Faulty]:
         """Make the instruments and give all of them."""

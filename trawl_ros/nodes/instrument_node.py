@@ -13,24 +13,27 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.instruments.errors.fault_plan import FaultPlan, PlannedFault
 from trawl_ros.instruments.errors.faults import FaultPanel, Faulty
 from trawl_ros.instruments.errors.instrument import SeedPlan
+from trawl_ros.instruments.observing import ObservingInstruments
 from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments
 from trawl_ros.messages.commands import FAULT_COMMAND, read_fault_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.fields import beyond
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.messages.truth_from_messages import observables_truth
 from trawl_ros.model.water import build_water
 from trawl_ros.nodes.runtime.credit import ConsumerProgress, Consumers
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER, STREAM
 from trawl_ros.nodes.runtime.synchroniser import Joiner
-from trawl_ros.records.samples import Sample
+from trawl_ros.records import topics
+from trawl_ros.records.samples import INSTRUMENTS, Sample
 from trawl_ros.records.surroundings import Surroundings
-from trawl_ros.records.topics import INSTRUMENTS
 from trawl_ros.scenario.scenario import load_scenario
 from trawl_ros.scenario.sea import build_surroundings
 
+OBSERVABLES = 'truth/observables'
 SEABED = 'truth/seabed'
 """Not finite where a scenario has no seabed."""
 
@@ -53,11 +56,19 @@ class InstrumentNode(TrawlNode, ABC):
     and the same as those of `InstrumentSuite` in one process.
     """
 
-    TRUTH: ClassVar[tuple[str, ...]] = ()
+    NAME: ClassVar[str]
+    """Name of the node, by which the registry knows what it hears and publishes."""
+
+    TRUTH: ClassVar[tuple[str, ...]]
     """Topics of truth that are looked at."""
 
-    SAMPLES: ClassVar[tuple[str, ...]] = ()
+    SAMPLES: ClassVar[tuple[str, ...]]
     """Topics of samples that are published."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        cls.TRUTH = tuple(row.name for row in topics.TRUTH if cls.NAME in row.heard_by)
+        cls.SAMPLES = tuple(row.name for row in INSTRUMENTS if cls.NAME in row.published_by)
 
     SPECS: ClassVar = (
         Text('scenario', '', 'Scenario file or name: its instruments, seed, water and changes of '
@@ -74,10 +85,11 @@ class InstrumentNode(TrawlNode, ABC):
               'announce itself to the simulation.'),
     )  # fmt: skip
 
-    def __init__(self, name: str, **kwargs: Any) -> None:
-        super().__init__(name, **kwargs)
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(self.NAME, **kwargs)
         setup = self._setup()
-        self._panel = FaultPanel(self.set_up(setup))
+        self._observing = ObservingInstruments(setup.parameters, setup.draws, (self.NAME,))
+        self._panel = FaultPanel([*self.set_up(setup), *self._observing.instruments])
         self._sensor_effects = setup.sensor_effects
         self._plan = FaultPlan(setup.faults, self._panel)
         self._by_parameter: dict[str, str] = {}
@@ -148,8 +160,13 @@ class InstrumentNode(TrawlNode, ABC):
         """True if a place belongs to another node."""
         if self._panel.knows(where):
             return False
-        topics = [topic.name for topic in INSTRUMENTS if topic.name not in self.SAMPLES]
-        return any(where == topic or where.startswith(f'{topic}/') for topic in topics)
+        others = [row.name for row in INSTRUMENTS if row.name not in self.SAMPLES]
+        return any(where == topic or where.startswith(f'{topic}/') for topic in others)
+
+    def _observed(self, stamp: int, messages: dict[str, Any]) -> list[Sample]:
+        message = messages.get(OBSERVABLES)
+        known = None if message is None else observables_truth(message)
+        return self._observing.observe(known, stamp)
 
     def _ready(self) -> Any:
         names = self.parameters['wait_for']
@@ -189,7 +206,7 @@ class InstrumentNode(TrawlNode, ABC):
                 return
             self._plan.follow(stamp)
             try:
-                for sample in self.observe(stamp, complete):
+                for sample in (*self.observe(stamp, complete), *self._observed(stamp, complete)):
                     self.send(*sample_message(self._sensor_effects(sample)))
             except MessageError as reason:
                 self.refuse(topic, str(reason))

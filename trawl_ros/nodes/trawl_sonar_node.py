@@ -18,19 +18,7 @@ SCHOOLS, SEABED = 'truth/schools', 'truth/seabed'
 class TrawlSonarNode(InstrumentNode):
     """Reports image, scan and points per sweep, the openings read off, pressure and bottom."""
 
-    TRUTH: ClassVar = (OPENING, POSE, SECTION, SCHOOLS, SEABED)
-    SAMPLES: ClassVar = (
-        'sonar/pressure',
-        'sonar/bottom',
-        'sonar/image',
-        'sonar/scan',
-        'sonar/points',
-        'sonar/opening_height',
-        'sonar/opening_width',
-    )
-
-    def __init__(self, **kwargs: Any) -> None:
-        super().__init__('trawl_sonar_node', **kwargs)
+    NAME: ClassVar = 'trawl_sonar_node'
 
     def set_up(self, setup: Setup) -> Sequence[Faulty]:
         """Make the instruments and give all of them."""

@@ -21,19 +21,7 @@ class VesselNode(InstrumentNode):
     ``vessel/echo_sounder/{depth,school}`` and ``vessel/fish_sonar``.
     """
 
-    TRUTH: ClassVar = (ODOMETRY, THROUGH_WATER, SCHOOLS, SEABED)
-    SAMPLES: ClassVar = (
-        'vessel/velocity_water',
-        'vessel/velocity_ground',
-        'vessel/fix',
-        'vessel/heading',
-        'vessel/echo_sounder/depth',
-        'vessel/echo_sounder/school',
-        'vessel/fish_sonar',
-    )
-
-    def __init__(self, **kwargs: Any) -> None:
-        super().__init__('vessel_node', **kwargs)
+    NAME: ClassVar = 'vessel_node'
 
     def set_up(self, setup: Setup) -> Sequence[Faulty]:
         """Make the instruments and give all of them."""

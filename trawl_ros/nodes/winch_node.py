@@ -17,11 +17,7 @@ WINCH = 'truth/winch'
 class WinchNode(InstrumentNode):
     """Reports ``winch/joint_states``."""
 
-    TRUTH: ClassVar = (WINCH,)
-    SAMPLES: ClassVar = ('winch/joint_states',)
-
-    def __init__(self, **kwargs: Any) -> None:
-        super().__init__('winch_node', **kwargs)
+    NAME: ClassVar = 'winch_node'
 
     def set_up(self, setup: Setup) -> Sequence[Faulty]:
         """Make the instruments and give all of them."""

@@ -17,24 +17,15 @@ from trawl_ros.messages.rotations import about_z, to_angles
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_from_messages import winch_truth
 from trawl_ros.plots.records import Series, TowHistory
-from trawl_ros.records.samples import (
-    AttitudeSample,
-    FixSample,
-    HeadingSample,
-    PressureSample,
-    RangeSample,
-    Sample,
-    VelocitySample,
-    WinchSample,
-)
+from trawl_ros.records.samples import INSTRUMENTS, SENSORS, Sample
 from trawl_ros.records.topics import absolute
 from trawl_ros.records.truth import SIDES
 
 MOST_POINTS = 20_000
 """Of one topic: where there are more, every other one is left out until there are not."""
 
-DISTANCES = {'spread': 'door_spread'}
-"""`RangeSample.what` by the name of the quantity, where they differ."""
+NOT_DRAWN = ('sonar/bottom', 'vessel/echo_sounder/depth', 'vessel/echo_sounder/school')
+"""Topics with numbers that no figure of a tow shows."""
 
 Columns = dict[str, float]
 
@@ -109,44 +100,21 @@ TRUTH: dict[str, Callable[[str, Any], Columns]] = {
     'truth/vessel/odom': _true_vessel,
     'truth/vessel/velocity_water': _true_water,
 }
-MEASURED = (
-    'winch/joint_states',
-    *(f'door/{side}/{what}' for side in SIDES for what in ('pressure', 'attitude')),
-    'door/spread',
-    'sonar/pressure',
-    'sonar/opening_height',
-    'sonar/opening_width',
-    'vessel/velocity_water',
-    'vessel/velocity_ground',
-    'vessel/heading',
-    'vessel/fix',
-)
+MEASURED = tuple(row.name for row in INSTRUMENTS if row.fields and row.name not in NOT_DRAWN)
 
 
 def sample_columns(sample: Sample, depth_at: Callable[[float], float]) -> Columns:
     """Split a sample into the quantities of `TowHistory.measured`; depths come from pressures."""
-    match sample:
-        case WinchSample():
-            return _winch_columns(sample.lengths, sample.tensions)
-        case PressureSample():
-            name = 'net_depth' if sample.place == 'sonar' else f'{sample.place}_door_depth'
-            known = np.isfinite(sample.pressure)
-            return {name: depth_at(sample.pressure) if known else float('nan')}
-        case AttitudeSample():
-            return {f'{sample.side}_pitch': sample.pitch, f'{sample.side}_roll': sample.roll}
-        case RangeSample():
-            return {DISTANCES.get(sample.what, sample.what): sample.distance}
-        case VelocitySample(over='water'):
-            forward, port, _ = sample.velocity
-            return {'speed_water': forward, 'drift_water': port}
-        case VelocitySample():
-            return _ground(*sample.velocity[:2])
-        case HeadingSample():
-            return {'heading': sample.heading}
-        case FixSample():
-            return {'latitude': sample.latitude, 'longitude': sample.longitude}
-        case _:
-            return {}
+    columns: Columns = {}
+    for number in SENSORS[sample.topic].fields:
+        value = number.get(sample)
+        if number.is_pressure and np.isfinite(value):
+            value = depth_at(value)
+        if number.curve:
+            columns[number.curve] = value
+    if 'ground_east' in columns:
+        return _ground(columns['ground_east'], columns['ground_north'])
+    return columns
 
 
 @dataclass

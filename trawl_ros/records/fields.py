@@ -13,61 +13,36 @@ from pydantic import Field
 
 from trawl_ros.core.compass import compass_yaw, course_velocity, speed_course
 from trawl_ros.core.schema import Record
-from trawl_ros.records.samples import (
-    AttitudeSample,
-    FixSample,
-    HeadingSample,
-    PressureSample,
-    RangeSample,
-    Sample,
-    VelocitySample,
-    WinchSample,
-)
-from trawl_ros.records.topics import RANGES
-from trawl_ros.records.truth import SIDES
+from trawl_ros.records.registry import Sensor, changed, with_numbers
+from trawl_ros.records.samples import INSTRUMENTS, SENSORS, Sample
 
-_RANGE = {'distance': 'length'}
-_PRESSURE = {'pressure': 'pressure', 'depth': 'length'}
-_ATTITUDE = {'pitch': 'angle', 'roll': 'angle'}
-
-FIELDS: dict[str, dict[str, str]] = {
-    'winch/joint_states': {
-        'port_length': 'length',
-        'starboard_length': 'length',
-        'port_speed': 'speed',
-        'starboard_speed': 'speed',
-        'port_tension': 'force',
-        'starboard_tension': 'force',
-    },
-    'door/port/pressure': _PRESSURE,
-    'door/starboard/pressure': _PRESSURE,
-    'sonar/pressure': _PRESSURE,
-    'door/port/attitude': _ATTITUDE,
-    'door/starboard/attitude': _ATTITUDE,
-    **dict.fromkeys(RANGES.values(), _RANGE),
-    'vessel/velocity_water': {'forward': 'speed', 'to_port': 'speed'},
+_COMPASS: dict[str, dict[str, str]] = {
     'vessel/velocity_ground': {'speed': 'speed', 'compass_course': 'angle'},
     'vessel/heading': {'compass_heading': 'angle'},
     'vessel/fix': {'latitude': 'angle', 'longitude': 'angle'},
 }
+"""Fields of topics whose samples hold other numbers than logs and sentences do."""
+
+
+def _fields(row: Sensor[Sample]) -> dict[str, str]:
+    own = {field.name: field.quantity for field in row.fields if field.quantity}
+    depth = {'depth': 'length'} if any(field.is_pressure for field in row.fields) else {}
+    return _COMPASS.get(row.name, own | depth)
+
+
+FIELDS = {row.name: fields for row in INSTRUMENTS if (fields := _fields(row))}
 """Fields of each topic that a log or a sentence can give, with their quantities."""
 
+_NOISE = {'vessel/fix': 'length', 'vessel/heading': 'angle'}
+
 STD_QUANTITIES = {
-    'door/port/pressure': 'pressure',
-    'door/starboard/pressure': 'pressure',
-    'sonar/pressure': 'pressure',
-    'door/port/attitude': 'angle',
-    'door/starboard/attitude': 'angle',
-    **dict.fromkeys(RANGES.values(), 'length'),
-    'vessel/heading': 'angle',
-    'vessel/fix': 'length',
+    name: _NOISE.get(name) or next(iter(fields.values()))
+    for name, fields in FIELDS.items()
+    if SENSORS[name].states_noise
 }
 """Topics whose messages state their noise, with its quantity."""
 
-RANGE_TOPICS = tuple(topic for topic, fields in FIELDS.items() if fields is _RANGE)
-
-_WINCH_READINGS = ('length', 'speed', 'tension')
-_QUANTITIES = {topic: quantity for quantity, topic in RANGES.items()}
+RANGE_TOPICS = tuple(name for name in FIELDS if SENSORS[name].is_range)
 
 
 class WaterColumn(Record):
@@ -127,23 +102,17 @@ def sample_of_fields(
         None if there is no reading for it. A winch sample with some of its readings has NaN for
         the others.
     """
+    row = SENSORS[topic]
     missing = [math.isnan(value) for value in readings.values()]
-    if all(missing) if topic == 'winch/joint_states' else any(missing):
+    if all(missing) if row.partial else any(missing):
         return None
-    match topic.split('/'):
-        case ['winch', _]:
-            return WinchSample(stamp, *(_pair(readings, quantity) for quantity in _WINCH_READINGS))
-        case [*_, place, 'pressure']:
-            pressure = readings.get('pressure', math.nan)
-            if water and 'depth' in readings:
-                pressure = water.pressure(readings['depth'])
-            return PressureSample(stamp, place, pressure, stated.std)
-        case ['door', side, 'attitude']:
-            return AttitudeSample(stamp, side, readings['pitch'], readings['roll'], stated.std)
-        case ['vessel', quantity]:
-            return _vessel_sample(quantity, stamp, readings, stated.std)
-    limits = (stated.min_range, stated.max_range)
-    return RangeSample(stamp, _QUANTITIES[topic], readings['distance'], stated.std, *limits)
+    own = _own_numbers(topic, readings)
+    if water and 'depth' in readings:
+        own['pressure'] = water.pressure(readings['depth'])
+    numbers = {field: own[field.name] for field in row.fields if field.name in own}
+    sample = changed(with_numbers(row.blank, numbers), stamp=stamp)
+    said = {name: value for name, value in vars(stated).items() if hasattr(sample, name)}
+    return changed(sample, **said)
 
 
 def fields_of_sample(
@@ -157,59 +126,41 @@ def fields_of_sample(
         Relative name and values by field, NaN where there is none; None for samples that are not
         numbers, as images.
     """
-    match sample:
-        case WinchSample():
-            columns = zip(
-                _WINCH_READINGS, (sample.lengths, sample.speeds, sample.tensions), strict=True
-            )
-            return 'winch/joint_states', {
-                f'{side}_{quantity}': value
-                for quantity, pair in columns
-                for side, value in zip(SIDES, pair, strict=True)
-            }
-        case PressureSample():
-            place = sample.place
-            topic = 'sonar/pressure' if place == 'sonar' else f'door/{place}/pressure'
-            fields = {'pressure': sample.pressure}
-            return topic, fields | ({'depth': water.depth(sample.pressure)} if water else {})
-        case AttitudeSample():
-            return f'door/{sample.side}/attitude', {'pitch': sample.pitch, 'roll': sample.roll}
-        case RangeSample():
-            # REP-117: infinite is no echo.
-            distance = sample.distance if math.isfinite(sample.distance) else math.nan
-            return RANGES[sample.what], {'distance': distance}
-        case VelocitySample(over='water'):
-            forward, to_port = float(sample.velocity[0]), float(sample.velocity[1])
-            return 'vessel/velocity_water', {'forward': forward, 'to_port': to_port}
-        case VelocitySample():
-            speed, course = speed_course(sample.velocity)
-            return 'vessel/velocity_ground', {'speed': speed, 'compass_course': course}
-        case HeadingSample():
-            compass = compass_yaw(sample.heading) % (2 * math.pi)
-            return 'vessel/heading', {'compass_heading': compass}
-        case FixSample():
-            return 'vessel/fix', {
-                'latitude': math.radians(sample.latitude),
-                'longitude': math.radians(sample.longitude),
-            }
-        case _:
-            return None
+    topic = sample.topic
+    if topic not in FIELDS:
+        return None
+    row = SENSORS[topic]
+    own = {field.name: field.get(sample) for field in row.fields}
+    if row.is_range and not math.isfinite(own['distance']):
+        # REP-117: infinite is no echo.
+        own['distance'] = math.nan
+    if water and 'pressure' in own:
+        own['depth'] = water.depth(own['pressure'])
+    logged = _logged_numbers(topic, own)
+    return topic, {name: logged[name] for name in FIELDS[topic] if name in logged}
 
 
-def _vessel_sample(quantity: str, stamp: int, readings: Mapping[str, float], std: float) -> Sample:
-    match quantity:
-        case 'velocity_water':
-            velocity = np.array([readings['forward'], readings.get('to_port', 0.0), 0.0])
-            return VelocitySample(stamp, 'water', velocity, math.nan)
-        case 'velocity_ground':
-            velocity = course_velocity(readings['speed'], readings['compass_course'])
-            return VelocitySample(stamp, 'ground', velocity, math.nan)
-        case 'heading':
-            return HeadingSample(stamp, compass_yaw(readings['compass_heading']), std)
-    latitude, longitude = (math.degrees(readings[field]) for field in ('latitude', 'longitude'))
-    return FixSample(stamp, latitude, longitude, std)
+def _own_numbers(topic: str, logged: Mapping[str, float]) -> dict[str, float]:
+    """Convert the numbers of a log into those of the sample."""
+    match topic:
+        case 'vessel/velocity_ground':
+            east, north, _ = course_velocity(logged['speed'], logged['compass_course'])
+            return {'east': float(east), 'north': float(north)}
+        case 'vessel/heading':
+            return {'heading': compass_yaw(logged['compass_heading'])}
+        case 'vessel/fix':
+            return {name: math.degrees(value) for name, value in logged.items()}
+    return dict(logged)
 
 
-def _pair(readings: Mapping[str, float], quantity: str) -> tuple[float, float]:
-    port, starboard = (readings.get(f'{side}_{quantity}', math.nan) for side in SIDES)
-    return port, starboard
+def _logged_numbers(topic: str, own: Mapping[str, float]) -> Mapping[str, float]:
+    """Convert the numbers of a sample into those of a log."""
+    match topic:
+        case 'vessel/velocity_ground':
+            speed, course = speed_course(np.array([own['east'], own['north']]))
+            return {'speed': speed, 'compass_course': course}
+        case 'vessel/heading':
+            return {'compass_heading': compass_yaw(own['heading']) % (2 * math.pi)}
+        case 'vessel/fix':
+            return {name: math.radians(value) for name, value in own.items()}
+    return own

@@ -1,26 +1,7 @@
 """Bounds of what instruments of a ship can report; a value beyond them is no reading."""
 
-import math
-from collections.abc import Iterator
+from trawl_ros.records.samples import SENSORS, Sample
 
-from trawl_ros.records.samples import (
-    AttitudeSample,
-    FixSample,
-    PressureSample,
-    RangeSample,
-    Sample,
-    VelocitySample,
-    WinchSample,
-)
-
-DEEPEST_M = 12_000.0
-FASTEST_M_S = 60.0
-LEAST_PA = 5e3
-"""Absolute pressure is more even in thin air; gauge pressure begins at 0."""
-MOST_PA = 1.3e8
-LEAST_N = -5e4
-"""Zero error of a load cell."""
-MOST_N = 1e7
 COMPASS_DEG = (-180.0, 360.0)
 """Loggers write compass angles from 0 to 360 or from -180 to 180."""
 
@@ -30,9 +11,11 @@ def impossible(sample: Sample) -> str | None:
 
     NaN stands for no reading, and passes.
     """
-    for quantity, value, low, high, unit in _bounded(sample):
-        if value < low or value > high:
-            return f'{quantity} beyond {low:g} to {high:g} {unit}'
+    # One by one: a norm with an unknown part is unknown, whatever the others are.
+    for field in SENSORS[sample.topic].fields:
+        value = field.get(sample) / field.scale
+        if value < field.low or value > field.high:
+            return f'{field.name} beyond {field.low:g} to {field.high:g} {field.unit}'
     return None
 
 
@@ -40,27 +23,3 @@ def impossible_compass(degrees: float) -> str | None:
     """Say that a compass angle (degrees) cannot be; None where it can."""
     low, high = COMPASS_DEG
     return None if low <= degrees <= high else f'compass angle beyond {low:g} to {high:g} degrees'
-
-
-def _bounded(sample: Sample) -> Iterator[tuple[str, float, float, float, str]]:
-    match sample:
-        case FixSample():
-            yield 'latitude', sample.latitude, -90.0, 90.0, 'degrees'
-            yield 'longitude', sample.longitude, -180.0, 180.0, 'degrees'
-        case VelocitySample():
-            # One by one: a norm with an unknown part is unknown, whatever the others are.
-            for component in sample.velocity:
-                yield 'speed', abs(float(component)), 0.0, FASTEST_M_S, 'm/s'
-        case RangeSample():
-            least = -100.0 if sample.what == 'depth' else 0.0
-            yield 'distance', sample.distance, least, DEEPEST_M, 'm'
-        case PressureSample():
-            yield 'absolute pressure', sample.pressure, LEAST_PA, MOST_PA, 'Pa'
-        case AttitudeSample():
-            yield 'pitch', math.degrees(sample.pitch), -90.0, 90.0, 'degrees'
-            yield 'roll', math.degrees(sample.roll), -180.0, 180.0, 'degrees'
-        case WinchSample():
-            for length in sample.lengths:
-                yield 'warp length', length, -100.0, DEEPEST_M, 'm'
-            for tension in sample.tensions:
-                yield 'tension', tension, LEAST_N, MOST_N, 'N'

@@ -4,25 +4,26 @@ A node has no more than it uses, so that on a secured graph (SROS 2) an instrume
 and nobody but controllers, set points and an operator writes ``command/*``.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from trawl_ros.records.topics import (
     CLOCK,
     COMMANDS,
+    CONTRACT,
     ESTIMATES,
     INSTRUMENTS,
     STATIC_TRANSFORMS,
     SYNC,
+    TOPICS,
     TRANSFORMS,
     TRUTH,
     Topic,
 )
 
 
-def _names(topics: tuple[Topic, ...], *beginnings: str) -> tuple[str, ...]:
-    """Return names of topics, of those with certain beginnings where some are given."""
-    names = [topic.name for topic in topics]
-    return tuple(name for name in names if not beginnings or name.startswith(beginnings))
+def _names(topics: Iterable[Topic]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(topic.name for topic in topics))
 
 
 @dataclass(frozen=True)
@@ -63,130 +64,48 @@ EVERY_NODE = Rights(
 )
 """Rights of every node: to log, report, hear the clock and answer for its parameters."""
 
-_FAULT = 'command/fault'
-_READINGS = (
-    *_names(INSTRUMENTS, 'door/', 'winch/'),
-    'sonar/pressure',
-    'sonar/opening_height',
-    *_names(INSTRUMENTS, 'vessel/velocity', 'vessel/heading'),
-)
-"""Readings from which boards are identified."""
-
-_SPOKEN = (
-    *_READINGS,
-    'sonar/bottom',
-    'vessel/fix',
-    'vessel/echo_sounder/depth',
-)
-"""Readings that ships' instruments send as sentences."""
-
-
-_SHOWN = (
-    *(
-        name
-        for name in _names(TRUTH)
-        if not name.endswith(('/angles', '/wrench')) and name != 'truth/sonar/pose'
-    ),
-    *_names(INSTRUMENTS),
-    'identification/status',
-    'identification/innovation',
-    *_names(ESTIMATES, 'discrepancy/', 'trial/'),
-    'command/winch',
-    'command/vessel',
-)
-"""Topics that are shown in space and over time."""
-
-
-def _consumer(
-    publishes: tuple[str, ...], hears: tuple[str, ...], answers: tuple[str, ...] = ()
-) -> Rights:
-    """Return the rights of a node for which sources wait."""
-    return Rights((*publishes, SYNC), hears, answers)
-
-
-RIGHTS = {
-    'sim_node': Rights(
-        publishes=(*_names(TRUTH), CLOCK.name, TRANSFORMS.name),
-        hears=('command/winch', 'command/vessel', SYNC),
-        answers=('pause', 'resume', 'step', 'reset'),
-    ),
-    'winch_node': _consumer(_names(INSTRUMENTS, 'winch/'), (_FAULT, 'truth/winch')),
-    'door_sensor_node': _consumer(
-        _names(INSTRUMENTS, 'door/'),
-        (_FAULT, 'truth/door/port/odom', 'truth/door/starboard/odom'),
-    ),
-    'trawl_sonar_node': _consumer(
-        _names(INSTRUMENTS, 'sonar/'),
-        (
-            _FAULT,
-            'truth/net/opening',
-            'truth/schools',
-            'truth/seabed',
-            'truth/sonar/pose',
-            'truth/sonar/section',
-        ),
-    ),
-    'vessel_node': _consumer(
-        _names(INSTRUMENTS, 'vessel/'),
-        (_FAULT, *_names(TRUTH, 'truth/vessel/'), 'truth/schools', 'truth/seabed'),
-    ),
-    'autotrawl_node': _consumer(('command/winch',), ('winch/joint_states',)),
-    'autopilot_node': _consumer(
-        ('command/vessel',),
-        (
-            'vessel/fish_sonar',
-            'vessel/fix',
-            'vessel/heading',
-            'vessel/velocity_ground',
-            'vessel/velocity_water',
-        ),
-    ),
-    'trial_node': _consumer(
-        ('command/winch', 'command/vessel', 'trial/status'),
-        (
-            'command/winch',
-            'command/vessel',
-            *_names(INSTRUMENTS, 'winch/'),
-            'door/port/pressure',
-            'door/starboard/pressure',
-            'sonar/pressure',
-            'sonar/opening_height',
-            'sonar/bottom',
-            'vessel/velocity_water',
-            'vessel/heading',
-            'vessel/echo_sounder/depth',
-            'identification/status',
-            SYNC,
-        ),
-        ('trial/pause', 'trial/resume', 'trial/veto', 'trial/take_over'),
-    ),
-    'nmea_in': Rights(_SPOKEN, ()),
-    'nmea_out': _consumer((), _SPOKEN),
-    'view_node': Rights((), _SHOWN),
-    'foxglove_node': Rights(
-        (),
-        (
-            *_names((*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS)),
-            TRANSFORMS.name,
-            STATIC_TRANSFORMS.name,
-        ),
-    ),
-    'identification_node': _consumer(
-        _names(ESTIMATES, 'identification/'), _READINGS, ('identification/finish',)
-    ),
-    'discrepancy_node': _consumer(
-        _names(ESTIMATES, 'discrepancy/'),
-        (*_READINGS, 'vessel/echo_sounder/depth'),
-        ('discrepancy/finish', 'discrepancy/acknowledge', 'discrepancy/dismiss'),
-    ),
-    'bag_recorder': _consumer((), _names((*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS))),
-    # Recorded commands are not played on a secured graph.
-    'bag_player': Rights(
-        (*_names((*TRUTH, *INSTRUMENTS, *ESTIMATES)), CLOCK.name, TRANSFORMS.name),
-        (SYNC,),
-        ('~/pause', '~/resume', '~/toggle_paused', '~/play_next'),
-    ),
+_SERVICES: dict[str, tuple[str, ...]] = {
+    'sim_node': ('pause', 'resume', 'step', 'reset'),
+    'winch_node': (),
+    'door_sensor_node': (),
+    'trawl_sonar_node': (),
+    'vessel_node': (),
+    'autotrawl_node': (),
+    'autopilot_node': (),
+    'trial_node': ('trial/pause', 'trial/resume', 'trial/veto', 'trial/take_over'),
+    'nmea_in': (),
+    'nmea_out': (),
+    'view_node': (),
+    'foxglove_node': (),
+    'identification_node': ('identification/finish',),
+    'discrepancy_node': ('discrepancy/finish', 'discrepancy/acknowledge', 'discrepancy/dismiss'),
+    'bag_recorder': (),
+    'bag_player': ('~/pause', '~/resume', '~/toggle_paused', '~/play_next'),
 }
+"""Nodes, and the services that each answers."""
+
+_SOURCES = ('sim_node', 'bag_player')
+"""Nodes that wait for consumers."""
+
+_NOT_WAITED_FOR = (*_SOURCES, 'nmea_in', 'set_points', 'view_node', 'foxglove_node')
+
+# Recorded commands are not played on a secured graph.
+_ALL_PUBLISHED = {'bag_player': (*TRUTH, *INSTRUMENTS, *ESTIMATES)}
+_ALL_HEARD = {'foxglove_node': CONTRACT, 'bag_recorder': CONTRACT}
+"""Nodes that play, record or show every topic of some kinds."""
+
+
+def _rights(node: str) -> Rights:
+    """Take the rights of a node from the rows of the registry."""
+    rows = (*TOPICS.values(), STATIC_TRANSFORMS)
+    publishes = [*_ALL_PUBLISHED.get(node, ()), *(row for row in rows if node in row.published_by)]
+    hears = [*_ALL_HEARD.get(node, ()), *(row for row in rows if node in row.heard_by)]
+    told = () if node in _NOT_WAITED_FOR else (SYNC,)
+    waits = (SYNC,) if node in (*_SOURCES, 'trial_node') else ()
+    return Rights((*_names(publishes), *told), (*_names(hears), *waits), _SERVICES.get(node, ()))
+
+
+RIGHTS = {node: _rights(node) for node in _SERVICES}
 """Rights by the name of the node."""
 
 OPERATOR = 'operator'
@@ -199,8 +118,8 @@ links commands then, so these rights are in an enclave of their own."""
 
 def enclaves() -> dict[str, Rights]:
     """Return the rights by enclave: those of the nodes, of set points and of an operator."""
-    said = RIGHTS['nmea_in'].publishes
-    commanding = Rights((*said, 'command/winch', 'command/vessel'), ('winch/joint_states',))
+    said, own = RIGHTS['nmea_in'].publishes, _rights(SET_POINTS)
+    commanding = Rights((*said, *own.publishes), own.hears)
     return {**RIGHTS, SET_POINTS: commanding, OPERATOR: operator_rights()}
 
 
@@ -214,7 +133,7 @@ def operator_rights() -> Rights:
     return Rights(
         _names(COMMANDS),
         (
-            *_names((*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS)),
+            *_names(CONTRACT),
             TRANSFORMS.name,
             SYNC,
             '/rosout',

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.records.observables import Observables
 
 SIDES = ('port', 'starboard')
 
@@ -136,6 +137,8 @@ class Truth:
         Position, heading and velocities of the ship.
     schools, seabed
         Fish, and depths of the bottom (m).
+    observables
+        Quantities that the estimator compares with readings; None where they are not known.
 
     Examples
     --------
@@ -152,6 +155,7 @@ class Truth:
     vessel: VesselTruth
     schools: tuple[SchoolTruth, ...] = ()
     seabed: SeabedTruth = SeabedTruth()
+    observables: Observables | None = None
 
 
 @dataclass(frozen=True)

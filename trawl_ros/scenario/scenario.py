@@ -184,7 +184,7 @@ def load_scenario(path: str | Path) -> Scenario:
     >>> import trawl_ros
     >>> scenario = trawl_ros.load_scenario('config/scenarios/demo.yaml')
     >>> scenario.duration_s, len(scenario.commands)
-    (3126.0, 5)
+    (3564.0, 5)
     """
     path = packaged(path, 'scenarios', ScenarioError)
     record = validated(ScenarioRecord, load_yaml(path, ScenarioError), path, ScenarioError)

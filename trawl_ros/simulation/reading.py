@@ -88,6 +88,7 @@ def read_truth(
             velocity_ground=ship.velocity + model.water.surface_current,
             velocity_water=np.array([ship.speed, 0.0, ship.heave_rate]),
         ),
+        observables=observables,
     )
 
 

@@ -145,7 +145,15 @@ def trim(
         found.balance(attitudes(yaw, pitch, roll))
         return observe(found.model, found.state, tow).port_attack - attack
 
-    yaw = brentq(excess, attack - OPTIONS.yaw_range, attack + OPTIONS.yaw_range, xtol=1e-6)
+    half = OPTIONS.yaw_range
+    try:
+        yaw = brentq(excess, attack - half, attack + half, xtol=1e-6)
+    except ValueError as reason:
+        # The boards' own motion changes attack by more where they lie nearly flat.
+        raise NoSteadyState(
+            f'no yaw within {np.degrees(half):.1f}° of the wanted attack angle, '
+            f'{np.degrees(attack):.1f}°, gives the boards this angle'
+        ) from reason
     found.balance(attitudes(yaw, pitch, roll))
     # The held shape is balanced, so the released gear starts at its root.
     trimmed = model.with_board(points=found.model.board.points)

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
+from typing_extensions import assert_never
 
 from trawl_ros.core.errors import MessageError
 from trawl_ros.core.time import SECOND
@@ -23,12 +24,14 @@ from trawl_ros.plots.reading import TRUTH, sample_columns
 from trawl_ros.records.samples import (
     FixSample,
     HeadingSample,
+    PictureSample,
     Sample,
     SchoolsSample,
     SonarImageSample,
     SonarPointsSample,
     SonarScanSample,
 )
+from trawl_ros.records.topics import CONTRACT
 from trawl_ros.records.truth import SIDES
 from trawl_ros.view.gear_source import GearFollower
 from trawl_ros.view.model_source import ModelFollower
@@ -53,21 +56,7 @@ IDENTIFICATION, FINDINGS, TRIAL = (
 )
 WINCH_COMMAND, VESSEL_COMMAND = 'command/winch', 'command/vessel'
 
-TOPICS = (
-    *TRUTH,
-    GEAR,
-    MOUTH,
-    SECTION,
-    SCHOOLS,
-    SEABED,
-    *SAMPLE_TOPICS,
-    IDENTIFICATION,
-    INNOVATION,
-    FINDINGS,
-    TRIAL,
-    WINCH_COMMAND,
-    VESSEL_COMMAND,
-)
+TOPICS = tuple(row.name for row in CONTRACT if 'view_node' in row.heard_by)
 """Relative names of the topics that are shown."""
 
 LAGGING = (IDENTIFICATION, INNOVATION, FINDINGS, TRIAL)
@@ -173,12 +162,16 @@ class TowReader:
             yield from self._quantities(Quantities(sample.stamp, 'measured', columns))
         if self._model is not None:
             yield from self._model.take(sample)
+        if isinstance(sample, HeadingSample):
+            self._ship.heading(sample.heading)
+        elif isinstance(sample, FixSample):
+            placed = self._ship.fix(sample)
+            yield from (record for record in placed or () if record is not None)
+        elif isinstance(sample, PictureSample):
+            yield from self._picture(sample)
+
+    def _picture(self, sample: PictureSample) -> Iterator[Shown]:
         match sample:
-            case HeadingSample():
-                self._ship.heading(sample.heading)
-            case FixSample():
-                placed = self._ship.fix(sample)
-                yield from (record for record in placed or () if record is not None)
             case SchoolsSample():
                 yield SeenSchools(sample.stamp, self._ship.in_map(sample.positions))
             case SonarPointsSample():
@@ -186,6 +179,8 @@ class TowReader:
             case SonarImageSample() | SonarScanSample():
                 sweep = self._sweeps.take(sample)
                 yield from () if sweep is None else (sweep,)
+            case _:
+                assert_never(sample)
 
     def _truth(self, topic: str, stamp: int, message: Any) -> Iterator[Shown]:
         columns = TRUTH[topic](topic, message)

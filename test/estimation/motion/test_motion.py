@@ -9,7 +9,6 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import GROUPS
-from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows, changes
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
@@ -18,7 +17,7 @@ from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, on_grid
 from trawl_ros.estimation.motion.towing.knots import hats, knots_of_counter, knots_of_log
 from trawl_ros.estimation.motion.towing.lineariser import TowLineariser, linearise_tow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
-from trawl_ros.lab.benchmark.motion import BAND, course_tow, narrowed, run_motion_trial
+from trawl_ros.lab.benchmark.motion import BAND, course_tow, run_motion_trial
 from trawl_ros.lab.benchmark.motion_instruments import run_instrument_trial
 from trawl_ros.model.gear_model import build_model
 
@@ -181,10 +180,8 @@ def test_what_the_model_cannot_tow_is_left_out_and_told(coarse):
         linearise_tow(TowedGear(coarse), replace(tow, inputs=gone), point, needed)
 
 
-def test_through_a_fall_the_model_is_towed_with_its_derivatives_held(coarse, gear):
-    # Boards as they are in the gear file fall themselves when this swift haul ends.
-    start = board_prior(gear).start
-    tow, point = course_tow(440.0), TowedPoint(start, 0.0, NO_ERRORS, NO_DRIFTS)
+def test_through_a_fall_the_model_is_towed_with_its_derivatives_held(coarse):
+    tow, point = course_tow(440.0), TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, NO_DRIFTS)
     fell = replace(tow, fallen=(2, 3))
     there = linearise_tow(TowedGear(coarse), fell, point)
     assert list(np.flatnonzero(~there.towed)) == [*range(2, 19)]
@@ -312,18 +309,18 @@ def test_smoothing_keeps_a_ramp_and_its_rate():
     np.testing.assert_allclose(rates, 0.4)
 
 
-def test_a_gear_with_effects_on_is_fitted_and_its_net_along(coarse, gear):
-    known = board_prior(gear)
-    prior = replace(known, std=0.05 * known.std)
+def test_a_gear_with_effects_on_is_fitted_and_its_net_along(coarse):
     laden = TowedGear(coarse, ON, net_std=0.02)
-    trial = run_motion_trial(laden, prior, 31, duration_s=80.0)
-    assert trial.fit.converged, trial.fit.reason
-    assert trial.squared_error < BAND[1]
-    assert [factor.what for factor in trial.fit.net] == ['drag', 'weight']
-    for factor in trial.fit.net:
-        assert 0.0 < factor.std < factor.known
-        assert abs(factor.value - 1.0) < 4.0 * factor.std
-    assert trial.fit.misfit < 1.3
+    trials = [run_motion_trial(laden, s, duration_s=80.0, std_factor=0.05) for s in (31, 32)]
+    # Of 24 normal errors: 99 % of the sums of their squares lie here.
+    assert 4.9 < np.mean([trial.squared_error for trial in trials]) < 22.8
+    for trial in trials:
+        assert trial.fit.converged, trial.fit.reason
+        assert [factor.what for factor in trial.fit.net] == ['drag', 'weight']
+        for factor in trial.fit.net:
+            assert 0.0 < factor.std < factor.known
+            assert abs(factor.value - 1.0) < 4.0 * factor.std
+        assert trial.fit.misfit < 1.3
 
 
 @pytest.mark.slow
@@ -332,9 +329,7 @@ def test_errors_of_the_estimate_are_as_large_as_it_says(gear, errors):
     """Twelve squared errors in the metric of the posterior are 12 in the mean."""
     netting = gear.netting.model_copy(update={'around': 24})
     model = build_model(gear.model_copy(update={'netting': netting}))
-    known = board_prior(gear)
-    prior = replace(known, std=0.3 * known.std)
-    trials = [run_motion_trial(TowedGear(model), prior, seed, errors) for seed in (1, 2, 3, 4)]
+    trials = [run_motion_trial(TowedGear(model), seed, errors) for seed in (1, 2, 3, 4)]
     assert all(trial.fit.converged for trial in trials)
     squares = [trial.squared_error for trial in trials]
     assert 6.4 < np.mean(squares) < 17.3
@@ -347,18 +342,17 @@ def test_errors_of_tows_read_by_instruments_are_as_large_as_the_estimate_says(ge
     netting = gear.netting.model_copy(update={'around': 24})
     record = gear.model_copy(update={'netting': netting})
     for seed in (202, 203):
-        truth, fit = run_instrument_trial(record, narrowed(board_prior(gear)), seed)
+        truth, fit = run_instrument_trial(record, seed)
         assert fit.converged
         away = fit.values - truth
         assert away @ np.linalg.solve(fit.covariance, away) < BAND[1]
 
 
-def test_the_fit_of_a_short_tow_is_calibrated(coarse, gear):
+def test_the_fit_of_a_short_tow_is_calibrated(coarse):
     """The same on the coarsest net, near the prior's mean, where a few steps lead to rest."""
-    known = board_prior(gear)
-    prior = replace(known, std=0.05 * known.std)
     trials = [
-        run_motion_trial(TowedGear(coarse), prior, seed, duration_s=80.0) for seed in range(11, 15)
+        run_motion_trial(TowedGear(coarse), seed, duration_s=80.0, std_factor=0.05)
+        for seed in range(11, 15)
     ]
     assert all(trial.fit.converged for trial in trials)
     # Of 48 normal errors: 99 % of the sums of their squares lie here.

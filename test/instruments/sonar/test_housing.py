@@ -60,8 +60,16 @@ def test_a_set_speed_of_sound_stretches_the_sounding_too() -> None:
 @pytest.mark.parametrize(
     ('key', 'value', 'sentence'),
     [
-        ('max_range_m', 120.0, 'rate_hz: found 0.1, expected 0.075 at most: 80 pings of 0.167 s'),
-        ('min_range_m', 95.0, 'max_range_m: found 90, expected more than min_range_m, which is 95'),
+        (
+            'max_range_m',
+            200.0,
+            'rate_hz: found 0.0625, expected 0.0474 at most: 76 pings of 0.278 s',
+        ),
+        (
+            'min_range_m',
+            155.0,
+            'max_range_m: found 150, expected more than min_range_m, which is 155',
+        ),
         ('white_db', -70.0, 'white_db: found -70, expected more than black_db, which is -60'),
         ('freeze_s', 3.0, 'freezes_per_hour: found 0 with freeze_s 3, expected both or neither'),
     ],

@@ -90,7 +90,8 @@ def test_differences_are_derivatives_and_cost_a_solution_each(coarse):
     found = differences.predict(*at, known.state)
     assert (exact.solves, differences.solves) == (1, 1 + len(PARAMETERS))
     size = np.abs(known.jacobian).max(axis=0)
-    assert (np.abs(found.jacobian - known.jacobian) / size).max() < 1e-3
+    # Forward differences err by the curvature over a step: 1.4e-3, and half of it at half the step.
+    assert (np.abs(found.jacobian - known.jacobian) / size).max() < 2e-3
 
 
 def test_the_search_lowers_the_objective_within_bounds_and_budget(coarse):

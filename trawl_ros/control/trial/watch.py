@@ -11,7 +11,6 @@ from trawl_ros.control.trial.records import TrialSettings, TrialTarget
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.channels import Reading, readings
 from trawl_ros.records.samples import RangeSample, Sample
-from trawl_ros.records.topics import RANGES
 
 NEEDED = ('port_length', 'starboard_length', 'port_tension', 'starboard_tension', 'speed')
 """Channels that a trial needs to begin."""
@@ -110,7 +109,7 @@ class TrialWatch:
 
     def take(self, sample: Sample, now: int) -> None:
         """Take a sample that arrived at a time (ns)."""
-        if isinstance(sample, RangeSample) and sample.what in RANGES:
+        if isinstance(sample, RangeSample):
             self._take(Reading(sample.what, sample.stamp, sample.distance, 0.0), now)
         for reading in readings(sample, self._pressure_to_depth):
             self._take(reading, now)

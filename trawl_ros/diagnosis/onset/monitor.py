@@ -54,9 +54,8 @@ SHORTEST, WAITS = 0.2, 20
 again."""
 
 NEARER = 0.1, 0.2, 0.3, 0.4
-"""Parts of the way from boards as they are known to those of the gear file, which are tried in turn
-where the model cannot be towed: of boards drawn from the prior it can with one in four, and with
-those of the gear file. They are where the model is linearised first, and what is known stays so."""
+"""Parts of the way from the known boards to those of the gear file. Where the model cannot be
+towed, they are tried in turn. The model is linearised there first; what is known stays so."""
 
 POORLY, LEARNING = 0.5, 20
 """Std of boards, in that of the gear file's prior (geometric mean), beyond which they are known too

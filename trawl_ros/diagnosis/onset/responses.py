@@ -20,15 +20,13 @@ from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.records.channels import INPUTS
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.tow import DifferentiatedTow
+from trawl_ros.solver.slow_mode import slow_mode
 
 FOLLOWED = 20
 """Stretches through which responses are towed."""
 
 STEP_S = 5.0
 """Step of that; a stretch is a whole number of it."""
-
-TAIL_S = 250.0
-"""Time in which the slowest motion fades to 1/e beyond them; between 200 and 550 s in gears."""
 
 LOG_TAPS = 8
 """Stretches for which an error of the log in one stretch is felt."""
@@ -144,7 +142,9 @@ def onset_responses(
     shown = [gear.by_values(one[:, own[0]], lasting.values, at) for one in missing]
     # Errors of sensors show at once: they are not missing, and came in with each.
     nothing = gear.by_values(np.zeros_like(missing[0][:, own[0]]), lasting.values, at)
-    fading = _with_tail(np.array(shown) - nothing, oldest)
+    # Beyond the towed stretches only the slowest motion is left.
+    decay_s = max(slow_mode(motion.model, motion.first).decay_s, STEP_S)
+    fading = _with_tail(np.array(shown) - nothing, oldest, decay_s)
     shares = counter_leap_shares(oldest)
     counted = gear.counted(at)
     fading[..., counted] = _followed(fading[..., counted], shares)
@@ -152,7 +152,7 @@ def onset_responses(
     places = [ERRORS.index(f'{name} offset') for name in INPUTS[:2]]
     stds = [INPUT_ERRORS[place].std for place in places]
     columns = [own[1].start + place for place in places]
-    leapt = _with_tail(missing[:, ROWS][:, :, columns] / stds, LEAP_TAPS)
+    leapt = _with_tail(missing[:, ROWS][:, :, columns] / stds, LEAP_TAPS, decay_s)
     counters = _followed(leapt, shares[:LEAP_TAPS])
     log = _of_log(gear, np.array(towed), own[1].start)
     return OnsetResponses(fading, _grown(fading), log, applied, counters)
@@ -194,8 +194,10 @@ def _held(inputs: tuple[float, float, float]) -> InputPoint:
     )  # fmt: skip
 
 
-def _with_tail(fading: FloatArray, oldest: int) -> FloatArray:
-    """Fading parts of `FOLLOWED` stretches, gone on with to the ``oldest``."""
+def _with_tail(fading: FloatArray, oldest: int, decay_s: float) -> FloatArray:
+    """Fading parts of `FOLLOWED` stretches, gone on with to the ``oldest``; they fall to 1/e in
+    ``decay_s``.
+    """
     more = np.arange(1, max(oldest - len(fading), 0) + 1)
-    tail = fading[-1] * np.exp(-more * LIVE.stretch_s / TAIL_S)[:, None, None]
+    tail = fading[-1] * np.exp(-more * LIVE.stretch_s / decay_s)[:, None, None]
     return np.concatenate((fading, tail))

@@ -44,9 +44,8 @@ LOST = 0.15
 single fall costs 12 % of an hour."""
 
 NEARER, STARTS = 0.5, 4
-"""Factor by which a fit begins nearer to what is known before where more than that cannot be towed
-along, as long as that is of use, and number of beginnings at most. From where boards fall fits take
-minutes to an end without rest."""
+"""If too much of a tow cannot be simulated, the distance to the prior's mean is multiplied by this
+factor and the fit retried, while that helps; and number of beginnings at most."""
 
 USUAL = 3.5
 """Matrices that are factorised for a step of a tow where none fails, about."""

@@ -22,9 +22,10 @@ class Sounder:
 
     def add(self, sample: Sample) -> None:
         """Add a sounding; samples of other instruments and lost echoes are none."""
-        match sample:
-            case RangeSample(what='depth', distance=depth) if math.isfinite(depth) and depth > 0.0:
-                self._soundings.append((sample.stamp, depth))
+        if not isinstance(sample, RangeSample) or sample.what != 'depth':
+            return
+        if 0.0 < sample.distance < math.inf:
+            self._soundings.append((sample.stamp, sample.distance))
 
     def depth(self, start_ns: int, end_ns: int) -> float | None:
         """Depth (m) under the ship in a window; None without a sounding."""

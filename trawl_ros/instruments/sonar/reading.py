@@ -29,8 +29,8 @@ CROWD = 20
 """Echoes about as low as the lowest that make it doubtful which of them is the footrope. The
 ropes themselves are fewer than ten."""
 
-CROWD_BESIDE = 1.0
-"""Echoes per beam outside of a side's line that make it doubtful that the line is the net."""
+CROWD_BESIDE = 22.0
+"""Echoes per radian outside of a side's line that make it doubtful that the line is the net."""
 
 ROUGH = 0.6
 """A side whose line is rougher than this (m, root mean square) near its widest is no netting."""
@@ -114,7 +114,8 @@ def _half_width(level: FloatArray, angles: FloatArray, grid: Grid) -> float:
         return math.nan
     netting = seen & (angles > NETTING_SECTOR)
     beside = (level >= CLEAR) & (grid.ranges > grid.ranges[line][:, None] + 2.0) & netting[:, None]
-    if (beside[:, 1:] & ~beside[:, :-1]).sum() > CROWD_BESIDE * max(netting.sum(), 1):
+    looked = grid.angle_increment * max(netting.sum(), 1)
+    if (beside[:, 1:] & ~beside[:, :-1]).sum() > CROWD_BESIDE * looked:
         return math.nan
     at = angles[seen]
     out = np.array([_middle(level[k], line[k], grid) for k in beams[seen]]) * np.sin(at)

@@ -119,6 +119,8 @@ class CoordinateSearch:
         while least > target and self.solves < budget and steps.max() > LAST_STEP:
             for index in range(len(best)):
                 for direction in (1.0, -1.0):
+                    if least <= target or self.solves >= budget:
+                        return Searched(least, self.solves, least <= target)
                     trial = best.copy()
                     trial[index] += direction * steps[index] * prior.std[index]
                     trial = np.clip(trial, prior.low, prior.high)
@@ -128,8 +130,6 @@ class CoordinateSearch:
                         break
                 else:
                     steps[index] *= 0.5
-                if least <= target or self.solves >= budget:
-                    break
         return Searched(least, self.solves, least <= target)
 
     def _try(self, coefficients: FloatArray, least: float) -> float:

@@ -9,7 +9,7 @@ from scipy.special import chdtri
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
-from trawl_ros.estimation.fit.error_terms import GROUPS, group_of
+from trawl_ros.estimation.fit.error_terms import group_of
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit import fit_motion
@@ -23,12 +23,20 @@ from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
-from trawl_ros.lab.benchmark.motion_instruments import run_instrument_trial, wrong_predictions
+from trawl_ros.lab.benchmark.motion_instruments import (
+    MOST_DRAWS,
+    PLACES,
+    PRIOR_STD_FACTOR,
+    narrowed,
+    run_instrument_trial,
+    wrong_predictions,
+)
 from trawl_ros.lab.report.measured import MeasuredValue, between
 from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.running.timing import timed
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import MEASURED
+from trawl_ros.solver.trimming.drawn_board import BoardDraw, draw_board
 
 AROUND = 24
 """Meshes around the mouth of the net."""
@@ -40,12 +48,8 @@ READ_SEEDS = (201, 202, 203, 204)
 
 NORMAL_95 = 1.96
 
-NARROWER = 0.3
-"""Part of its std to which the boards' prior is narrowed, from which they are drawn: of boards from
-all of it hardly one in five tows this course."""
-
 MOVES = (
-    (20.0, 110.0, -80.0, 0.0),
+    (20.0, 110.0, -40.0, 0.0),
     (130.0, 160.0, 0.0, -0.2),
     (220.0, 250.0, 0.0, 0.3),
     (270.0, 400.0, 40.0, 0.0),
@@ -55,15 +59,24 @@ at a lower one boards lose their lift meanwhile, and bars go slack."""
 
 START = np.array([520.0, 520.0, 2.3])
 
-NOISE = dict(zip(GROUPS, (500.0, 0.1, 0.4, 0.1, 0.003, 0.003, 0.3), strict=True))
+NOISE = {
+    'tension': 500.0,
+    'door_depth': 0.1,
+    'door_spread': 0.4,
+    'net_depth': 0.1,
+    'pitch': 0.003,
+    'roll': 0.003,
+    'vertical_opening': 0.3,
+}
 """Standard deviations (SI) of the means of a stretch of 20 s, about those of the instruments."""
+
+CHANNELS = tuple(name for name in MEASURED if group_of(name) in NOISE)
+"""Channels of the tows."""
 
 STEP_S, STRETCH_S, DURATION_S = 2.0, 20.0, 420.0
 
 LOG_STD, MEMORY_S = 0.03, 160.0
 """Std (m/s) of a reading of the log, one a second; time (s) after which an error is forgotten."""
-
-MOST_DRAWS = 60
 
 BAND = tuple(float(chdtri(12, tail)) for tail in (0.975, 0.025))
 """Band that holds 95 % of the squared normalised errors of twelve coefficients."""
@@ -104,30 +117,30 @@ def course_tow(duration_s: float = DURATION_S) -> MovingTow:
         change = np.array([warp, warp, speed])
         values += change * part**2 * (3.0 - 2.0 * part)
         rates += change * 6.0 * part * (1.0 - part) / (end - begin)
-    n, k, steps = int(duration_s / STRETCH_S), len(MEASURED), round(STRETCH_S / STEP_S)
+    n, k, steps = int(duration_s / STRETCH_S), len(CHANNELS), round(STRETCH_S / STEP_S)
     weights = np.full((n, k, steps + 1), 1.0 / steps)
     weights[..., [0, -1]] *= 0.5
-    noise = np.tile([NOISE[group_of(name)] for name in MEASURED], (n, 1))
+    noise = np.tile([NOISE[group_of(name)] for name in CHANNELS], (n, 1))
     still = np.zeros(len(grid))
     return MovingTow(
-        'course', 0, STEP_S, STRETCH_S, MEASURED, np.zeros((n, k)), noise,
+        'course', 0, STEP_S, STRETCH_S, CHANNELS, np.zeros((n, k)), noise,
         np.ones((n, k), dtype=int), weights, TowInputs(1.0, values, rates, still, still),
     )  # fmt: skip
 
 
 def run_motion_trial(
     gear: TowedGear,
-    prior: ParameterVector,
     seed: int,
     errors: bool = False,
     duration_s: float = DURATION_S,
+    std_factor: float = PRIOR_STD_FACTOR,
 ) -> MotionTrial:
-    """Draw a board from a prior, tow it, add noise, and fit from the prior's mean.
+    """Draw a board from the prior, rig and tow it, add noise, and fit from the prior's mean.
 
     Parameters
     ----------
-    gear, prior
-        The gear that is towed, and the prior of its board.
+    gear
+        The gear that is towed.
     seed
         Of the trial.
     errors
@@ -135,12 +148,16 @@ def run_motion_trial(
         log, calibration, drifts of sensors and errors of the model; else white noise alone.
     duration_s
         Length of the tow.
+    std_factor
+        Part of the gear file's std of the boards' prior.
 
     Raises
     ------
     TrawlError
         If none of `MOST_DRAWS` boards tows the course.
     """
+    record = gear.model.gear
+    prior = narrowed(board_prior(record), std_factor)
     chance, tow = np.random.default_rng(seed), course_tow(duration_s)
     if errors:
         readings = np.arange(0.0, duration_s)
@@ -153,15 +170,16 @@ def run_motion_trial(
         )
     layout = layout_of(tow, gear, options.model)
     for _ in range(MOST_DRAWS):
+        drawn = draw_board(record, PLACES, chance, BoardDraw(std_factor=std_factor))
+        rigged = replace(gear, model=gear.model.with_board(points=drawn.model.board.points))
         z = chance.standard_normal(len(layout))
         z[len(prior)] = abs(z[len(prior)])
         if not errors:
             z[len(prior) :] = 0.0
+        z[: len(prior)] = (drawn.coefficients - prior.start) / prior.std
         point = point_of(tow, layout, z, prior.start, prior.std)
-        if np.any((point.coefficients < prior.low) | (point.coefficients > prior.high)):
-            continue
         try:
-            towed = linearise_tow(gear, tow, point, np.ones(len(tow), dtype=bool))
+            towed = linearise_tow(rigged, tow, point, np.ones(len(tow), dtype=bool))
         except NoSteadyState:
             continue
         means = towed.values + columns(towed, layout, prior.std) @ (z * linear_part(layout))
@@ -169,14 +187,12 @@ def run_motion_trial(
             covariance = rows.covariance(options.sizes.of_group(number), options.times)
             noise = np.linalg.cholesky(covariance) @ chance.standard_normal(len(covariance))
             means[rows.stretches, rows.channels] += noise
-        fit = fit_motion(gear, [replace(tow, means=means)], prior, options)
+        fit = fit_motion(rigged, [replace(tow, means=means)], prior, options)
         return MotionTrial(point.coefficients, prior, fit)
-    raise TrawlError(f'none of {MOST_DRAWS} boards drawn from the prior tows the course')
-
-
-def narrowed(prior: ParameterVector) -> ParameterVector:
-    """Prior of the trials."""
-    return replace(prior, std=NARROWER * prior.std)
+    raise TrawlError(
+        f'none of {MOST_DRAWS} boards drawn from identification of {record.name} tows the course; '
+        'expected one: ask for another seed'
+    )
 
 
 def measure(small: bool) -> Findings:
@@ -184,19 +200,17 @@ def measure(small: bool) -> Findings:
     record = default_gear(small=small)
     if not small:
         record = with_around(record, AROUND)
-    gear, prior = TowedGear(build_model(record)), narrowed(board_prior(record))
-    if small:
-        prior = replace(prior, std=0.2 * prior.std)
+    gear, factor = TowedGear(build_model(record)), PRIOR_STD_FACTOR * (0.2 if small else 1.0)
     rows: list[MeasuredValue] = []
     seeds, duration = (SEEDS[:1], 80.0) if small else (SEEDS, DURATION_S)
     for words, errors in (('white noise', False), ('all errors as stated', True)):
         if not (small and errors):
             runs = [
-                partial(run_motion_trial, gear, prior, seed, errors, duration) for seed in seeds
+                partial(run_motion_trial, gear, seed, errors, duration, factor) for seed in seeds
             ]
             rows += _rows(words, runs)
     if not small:
-        for along, groups in wrong_predictions(record, prior, READ_SEEDS[1]).items():
+        for along, groups in wrong_predictions(record, READ_SEEDS[1]).items():
             rows += [
                 MeasuredValue(
                     f'prediction at the truth along {along}: {group}', away, '',
@@ -204,26 +218,26 @@ def measure(small: bool) -> Findings:
                 )
                 for group, away in groups.items()
             ]  # fmt: skip
-        rows += _rows(
-            'read by instruments', [partial(_read_trial, record, prior, s) for s in READ_SEEDS]
-        )
+        rows += _rows('read by instruments', [partial(_read_trial, record, s) for s in READ_SEEDS])
     return Findings(
         tuple(rows),
         text=f'{DURATION_S:.0f} s of hauling, two speed steps and veering, in stretches of '
         f'{STRETCH_S:.0f} s; the model, with {AROUND} meshes around its net, is its own plant and '
-        f'is towed in the same steps of {STEP_S:g} s. Boards are drawn from {NARROWER:g} of the '
-        "gear file's prior; the fit begins at the mean of that, and knows it. With *white noise* "
-        'inputs and sensors are else exact; with *all errors as stated* added mass, counters, log, '
-        'calibration, drifts and errors of the model are drawn from what the fit takes them for. '
+        f'is towed in the same steps of {STEP_S:g} s. Boards are drawn from the '
+        f"gear file's prior with {PRIOR_STD_FACTOR:g} of its std, and rigged for the course's "
+        'states; the fit begins at the mean of that prior and knows the fastening points. With '
+        '*white noise* inputs and sensors are else exact; with *all errors as stated* added mass, '
+        'counters, log, calibration, drifts and errors of the model are drawn from what the fit '
+        'takes them for. '
         '*Read by instruments*, the same course is commanded to ship and winches, simulated in '
         'steps of 0.5 s and read by the default instruments, counters and spread sensor of which '
         'are wrong by another amount after each command; the fit knows none of it.',
     )
 
 
-def _read_trial(record: GearRecord, prior: ParameterVector, seed: int) -> MotionTrial:
-    coefficients, fit = run_instrument_trial(record, prior, seed)
-    return MotionTrial(coefficients, prior, fit)
+def _read_trial(record: GearRecord, seed: int) -> MotionTrial:
+    coefficients, fit = run_instrument_trial(record, seed)
+    return MotionTrial(coefficients, narrowed(board_prior(record)), fit)
 
 
 def _rows(words: str, runs: Sequence[Callable[[], MotionTrial]]) -> list[MeasuredValue]:
@@ -231,7 +245,7 @@ def _rows(words: str, runs: Sequence[Callable[[], MotionTrial]]) -> list[Measure
     squares = np.array([trial.squared_error for trial in trials])
     inside = np.mean((squares >= BAND[0]) & (squares <= BAND[1]))
     shrunk = np.exp(np.mean([np.log(trial.shrunk).mean() for trial in trials]))
-    at_rest = sum(trial.fit.converged for trial in trials)
+    converged = sum(trial.fit.converged for trial in trials)
     # The mean over n trials of the sum of twelve squared normal errors has a band of its own.
     freedom = 12 * len(trials)
     low, high = (float(chdtri(freedom, tail)) / len(trials) for tail in (0.975, 0.025))
@@ -242,7 +256,7 @@ def _rows(words: str, runs: Sequence[Callable[[], MotionTrial]]) -> list[Measure
             float(squares.mean()),
             '',
             between(low, high),
-            f'{each}; {at_rest} of {len(trials)} came to rest',
+            f'{each}; {converged} of {len(trials)} converged',
         ),
         MeasuredValue(
             f'{words}: trials with it within {BAND[0]:.1f} to {BAND[1]:.1f}',

@@ -8,6 +8,7 @@ from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.estimation.fit.error_terms import group_of
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit import fit_motion
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.nuisances import ADDED_MASS_STD
@@ -43,22 +44,31 @@ from trawl_ros.simulation.simulation import Simulation, tow_of
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
+from trawl_ros.solver.trimming.drawn_board import BoardDraw, draw_board, fastened_as
 
 COURSE = (
     (0.0, 520.0, 2.3),
-    (20.0, 440.0, 2.3),
-    (130.0, 440.0, 2.1),
-    (220.0, 440.0, 2.4),
-    (270.0, 480.0, 2.4),
+    (20.0, 480.0, 2.3),
+    (130.0, 480.0, 2.1),
+    (220.0, 480.0, 2.4),
+    (270.0, 520.0, 2.4),
 )
 """Commands: from when (s), length of both warps (m), speed (m/s)."""
+
+PLACES = tuple((warp, speed) for _, warp, speed in COURSE)
+"""Warp length (m) and speed (m/s) of the steady states in which drawn boards must be usable."""
+
+PRIOR_STD_FACTOR = 0.3
+"""Part of its std to which the boards' prior is narrowed. Fits begin at its mean, of which boards
+fastened for other coefficients must still tow."""
 
 DURATION_S = 420.0
 
 PERIOD_S, PERIODS = 0.25, 2
 """Period of the simulation, and how many of them make one truth: two a second."""
 
-MOST_DRAWS = 60
+MOST_DRAWS = 20
+"""Boards with steady states at all places, drawn until one can be towed in time."""
 
 AS_READ_S = 5.0
 """Reach over which counters are smoothed that are followed as they read."""
@@ -73,8 +83,8 @@ class PlantTow:
 
     Attributes
     ----------
-    coefficients : (12,) array
-        Of its boards.
+    gear
+        With the drawn coefficients and the fastening points for them.
     added_mass
         As a part of the cylinder of water around a board.
     samples
@@ -85,7 +95,7 @@ class PlantTow:
         At the truths.
     """
 
-    coefficients: FloatArray
+    gear: GearRecord
     added_mass: float
     samples: tuple[Sample, ...]
     inputs: FloatArray
@@ -94,14 +104,9 @@ class PlantTow:
 
 
 def tow_plant(
-    plant: GearRecord,
-    gear: TowedGear,
-    coefficients: FloatArray,
-    added_mass: float,
-    seed: int,
-    duration_s: float = DURATION_S,
+    plant: GearRecord, added_mass: float, seed: int, duration_s: float = DURATION_S
 ) -> PlantTow:
-    """Tow a board along `COURSE` and read it by the instruments that come with the package, of
+    """Tow a plant along `COURSE` and read it by the instruments that come with the package, of
     which every command changes what stays wrong.
 
     Raises
@@ -109,9 +114,10 @@ def tow_plant(
     NoSteadyState, StepFailed
         If the gear cannot be towed that way.
     """
+    gear = TowedGear(build_model(plant))
     (_, warp, speed), *changes = COURSE
     simulation = Simulation(
-        gear.model.with_coefficients(coefficients),
+        gear.model,
         Command(warp, warp, speed),
         period=PERIOD_S,
         effect_set=gear.with_added_mass(added_mass),
@@ -139,14 +145,17 @@ def tow_plant(
     true = np.array(inputs)
     faster = np.gradient(true[:, 2], PERIODS * PERIOD_S)
     return PlantTow(
-        coefficients, added_mass, tuple(samples), true, np.column_stack((payouts, faster)),
+        plant, added_mass, tuple(samples), true, np.column_stack((payouts, faster)),
         np.array(seen),
     )  # fmt: skip
 
 
-def draw_tow(
-    record: GearRecord, prior: ParameterVector, seed: int, duration_s: float = DURATION_S
-) -> PlantTow:
+def narrowed(prior: ParameterVector, std_factor: float = PRIOR_STD_FACTOR) -> ParameterVector:
+    """Prior of the trials."""
+    return replace(prior, std=std_factor * prior.std)
+
+
+def draw_tow(record: GearRecord, seed: int, duration_s: float = DURATION_S) -> PlantTow:
     """Draw boards and their added mass until one can be towed.
 
     Raises
@@ -154,17 +163,18 @@ def draw_tow(
     TrawlError
         If none of `MOST_DRAWS` boards tows the course.
     """
-    gear, chance = TowedGear(build_model(record)), np.random.default_rng(seed)
+    chance = np.random.default_rng(seed)
     for _ in range(MOST_DRAWS):
-        coefficients = prior.start + prior.std * chance.standard_normal(len(prior))
+        drawn = draw_board(record, PLACES, chance, BoardDraw(std_factor=PRIOR_STD_FACTOR))
         added_mass = ADDED_MASS_STD * abs(chance.standard_normal())
-        if np.any((coefficients < prior.low) | (coefficients > prior.high)):
-            continue
         try:
-            return tow_plant(record, gear, coefficients, added_mass, seed, duration_s)
+            return tow_plant(drawn.gear, added_mass, seed, duration_s)
         except (NoSteadyState, StepFailed):
             continue
-    raise TrawlError(f'none of {MOST_DRAWS} boards drawn from the prior tows the course')
+    raise TrawlError(
+        f'none of {MOST_DRAWS} boards drawn from identification of {record.name} tows the course; '
+        'expected one: ask for another seed'
+    )
 
 
 def read_tow(record: GearRecord, plant: PlantTow, name: str) -> TowReadings:
@@ -173,7 +183,7 @@ def read_tow(record: GearRecord, plant: PlantTow, name: str) -> TowReadings:
 
 
 def run_instrument_trial(
-    record: GearRecord, prior: ParameterVector, seed: int, duration_s: float = DURATION_S
+    record: GearRecord, seed: int, duration_s: float = DURATION_S
 ) -> tuple[FloatArray, MotionFit]:
     """Draw a board, tow it, read it, and fit it from the prior's mean.
 
@@ -182,15 +192,14 @@ def run_instrument_trial(
     tuple
         The coefficients (12,) that were towed, and the fit.
     """
-    plant, name = draw_tow(record, prior, seed, duration_s), f'seed {seed}'
+    plant, name = draw_tow(record, seed, duration_s), f'seed {seed}'
     tow = moving_tow(read_tow(record, plant, name), name, FROM_REST)
-    fit = fit_motion(TowedGear(build_model(record)), [tow], prior, MotionOptions())
-    return plant.coefficients, fit
+    model = build_model(fastened_as(record, plant.gear))
+    fit = fit_motion(TowedGear(model), [tow], narrowed(board_prior(record)), MotionOptions())
+    return plant.gear.board.coefficients.array(), fit
 
 
-def wrong_predictions(
-    record: GearRecord, prior: ParameterVector, seed: int
-) -> dict[str, dict[str, float]]:
+def wrong_predictions(record: GearRecord, seed: int) -> dict[str, dict[str, float]]:
     """Departure of the model from a tow at its true parameters, by what it is towed along.
 
     Returns
@@ -199,7 +208,7 @@ def wrong_predictions(
         Inputs → group of channels → std of the difference of means through the tow, over their own
         noise. What stays is left out, for calibration errors take it up.
     """
-    plant, name = draw_tow(record, prior, seed), f'seed {seed}'
+    plant, name = draw_tow(record, seed), f'seed {seed}'
     read = read_tow(record, plant, name)
     tow = moving_tow(read, name, FROM_REST)
     rows = [OBSERVABLES.index(channel) for channel in tow.channels]
@@ -210,7 +219,7 @@ def wrong_predictions(
     found = {}
     for words, (values, rates) in _inputs(read, plant, grid).items():
         along = without_errors(TowInputs(half, values, rates, still, still))
-        away = (_towed(record, plant, along, tow, rows) - true) / tow.noise
+        away = (_towed(plant, along, tow, rows) - true) / tow.noise
         away -= np.nanmean(away, axis=0)
         found[words] = {
             group: float(np.sqrt(np.nanmean(away[:, _channels(tow, group)] ** 2)))
@@ -219,16 +228,14 @@ def wrong_predictions(
     return found
 
 
-def _towed(
-    record: GearRecord, plant: PlantTow, along: CorrectedInputs, tow: MovingTow, rows: list[int]
-) -> FloatArray:
+def _towed(plant: PlantTow, along: CorrectedInputs, tow: MovingTow, rows: list[int]) -> FloatArray:
     """Means (n, k) of the plant's boards, towed along inputs in the steps of a tow."""
-    none = np.zeros((0, 3))
+    none, gear = np.zeros((0, 3)), TowedGear(build_model(plant.gear))
     towed = DifferentiatedTow(
-        build_model(record).with_coefficients(plant.coefficients),
+        gear.model,
         MotionParameters(coefficients=False),
         lambda time: replace(along(time), errors=none, error_rates=none),
-        TowedGear(build_model(record)).with_added_mass(plant.added_mass),
+        gear.with_added_mass(plant.added_mass),
     )
     seen = [towed.observed().values[rows]]
     for _ in range(len(tow) * tow.steps):

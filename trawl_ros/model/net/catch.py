@@ -12,8 +12,8 @@ from trawl_ros.model.net.planned_cloth import sections_of
 from trawl_ros.model.net.rows import Profile
 from trawl_ros.model.net.weave import NetMesh
 
-ROUNDS = 20
-"""Rounds after which the catch and the circumference in its middle agree."""
+MAX_ITERATIONS = 20
+"""Iterations after which the catch and the circumference in its middle agree."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def place_catch(catch: CatchRecord, net: NettingRecord, mesh: NetMesh) -> Codend
     if net.plan is not None:
         profile = sections_of(net, net.plan, 'codend', 'upper')
     behind = 0.0
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ITERATIONS):
         section, circumference = profile.at(profile.length - behind)
         body = catch_body(catch, float(circumference), square=section.square)
         behind = min(0.5 * body.length, profile.length)

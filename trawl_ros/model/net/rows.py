@@ -10,8 +10,7 @@ import numpy as np
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.limits import GEAR_NODES
 from trawl_ros.gear.netting import NettingRecord, SectionRecord
-from trawl_ros.model.net.twine_drag import viscous
-from trawl_ros.model.net.wake import bar_angle, exposure
+from trawl_ros.model.net.wake import bar_angle, exposure, viscous
 
 LEAST_ROWS = 3
 """So that the top has two nodes for the kite's carrying points."""

@@ -9,28 +9,44 @@ which has the slope θ to the flow, and by turbulent exchange e:
 
 C_t and C_n are the loads along and across the sheet per area of twine. Across the flow this is
 Taylor's screen (1944); e is chosen by panels that lie along the flow (config/panels).
+
+Growth of the drag of twine and knots as their Reynolds number Re falls.
+
+Across a cylinder C_n is 1.1 + 4 Re^-1/2, with Re of the motion across; the laminar part of the pull
+along it is π μ 0.55 Re^1/2 U_t per length (Choo and Casarella 1971, Hydrodynamic resistance of
+towed cables, Journal of Hydronautics 5(4)). Both go with the root of the motion across, so that the
+loops over bars need one more root and no Reynolds number. Knots are taken for spheres, as Balash
+and others (2009) do: C_D goes with 0.4 + 6 / (1 + Re^1/2), about 0.4 (1 + 15 Re^-1/2).
 """
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import pi, radians
+from math import pi, radians, sqrt
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.netting import NettingRecord, SectionRecord
 
-ROUNDS, SHARE, CLOSE = 500, 0.2, 1e-9
-"""Rounds in which water and loads agree at most, the share of the way that each of them goes, and
-the change of speeds behind which they do."""
+MAX_ITERATIONS, RELAXATION, SPEED_TOLERANCE = 500, 0.2, 1e-9
+"""Iterations of water and loads at most, the share of a change that each takes, and the largest
+change of the speeds, relative to that of the tow, at which they agree."""
 
-SMALL = 0.1
+VISCOSITY = 1.36e-6
+"""Kinematic viscosity of sea water of 35 g/kg at 10 °C, m²/s (ITTC 7.5-02-01-03)."""
+
+ACROSS_GROWTH, ALONG_GROWTH, KNOT_GROWTH = 4.0, 1.1, 15.0
+"""Factors of Re^-1/2 in the coefficient across, of Re^1/2 over the Reynolds number of the motion
+along in that of friction on the wetted surface, and of Re^-1/2 in that of knots, relative to its
+value at high Re."""
+
+LOOKUP_SLOPE_RAD = 0.1
 """Slope (rad) at which the lift of bars is looked up."""
 
 LEAST_LIFT = 0.01
 """Lift of a sheet per outline area and slope, over ½ ρ U², below which it is left out."""
 
-DENSEST = 0.9
+MAX_SOLIDITY = 0.9
 """Solidity that denser netting is taken to have."""
 
 
@@ -93,7 +109,7 @@ def sheet(section: SectionRecord, net: NettingRecord, angle: float, slope: float
     return Sheet(
         bars=np.eye(3)[:2] if section.square else np.array(bars),
         slope=slope,
-        solidity=min(float(solidity), DENSEST),
+        solidity=min(float(solidity), MAX_SOLIDITY),
         knots=pi / 8.0 * knot**2 * diameter / bar,
     )
 
@@ -120,15 +136,15 @@ def slowed(net: NettingRecord, sheet: Sheet) -> FloatArray:
     """Motion (3,) of the water at the twines of a sheet, of its speed far away."""
     cosine, _, sine = sheet.flow
     lost = np.zeros(2)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ITERATIONS):
         left = 1.0 - lost
         flow = np.array([left[0] * cosine, 0.0, left[1] * sine / (1.0 - sheet.solidity)])
         load = sheet.solidity * loads(net, sheet, flow).sum(axis=0)[[0, 2]]
         passing = 4.0 * (left[1] * sine + net.wake_exchange)
         taken = load / np.maximum(passing * np.array([cosine, sine]), 1e-12)
         change = np.minimum(taken, 0.95) - lost
-        lost += SHARE * change
-        if np.abs(change).max() < CLOSE:
+        lost += RELAXATION * change
+        if np.abs(change).max() < SPEED_TOLERANCE:
             break
     return flow
 
@@ -154,9 +170,14 @@ def exposure_of(sheet: Sheet, net: NettingRecord) -> Exposure:
 
 def bars_lift(net: NettingRecord, sheet: Sheet, shares: tuple[float, float, float]) -> float:
     """Lift of the bars of a sheet at a small slope, per outline area and that slope."""
-    tilted = replace(sheet, slope=SMALL)
+    tilted = replace(sheet, slope=LOOKUP_SLOPE_RAD)
     force = np.array(shares) @ loads(net, tilted, tilted.flow)
-    return float(sheet.solidity * force @ [-np.sin(SMALL), 0.0, np.cos(SMALL)] / np.sin(SMALL))
+    return float(
+        sheet.solidity
+        * force
+        @ [-np.sin(LOOKUP_SLOPE_RAD), 0.0, np.cos(LOOKUP_SLOPE_RAD)]
+        / np.sin(LOOKUP_SLOPE_RAD)
+    )
 
 
 @lru_cache(1000)
@@ -167,3 +188,15 @@ def exposure(section: SectionRecord, net: NettingRecord, closing: float = 0.0) -
     if section.shielding is not None:
         return Exposure(section.shielding, section.shielding, section.shielding)
     return exposure_of(sheet_of(section, net, closing), net)
+
+
+def viscous(net: NettingRecord, diameter: float) -> tuple[float, float]:
+    """Viscous parts (√(m/s)) of a twine's drag across and along, of `model.bar.drag_at`."""
+    scale = net.viscous * sqrt(VISCOSITY / diameter) if diameter > 0.0 else 0.0
+    across = ACROSS_GROWTH * scale / net.normal_drag if net.normal_drag else 0.0
+    return across, ALONG_GROWTH * scale / net.friction if net.friction else 0.0
+
+
+def viscous_knots(net: NettingRecord, diameter: float) -> float:
+    """Viscous drag coefficient (√(m/s)) of knots of a diameter (m), for `model.lump_pass`."""
+    return net.knot_drag * KNOT_GROWTH * net.viscous * sqrt(VISCOSITY / diameter)

@@ -37,8 +37,7 @@ class LinearisedStepOptions(StepperOptions):
     ----------
     root_tolerance_ratio
         Ratio of the tolerance before the linearisation to that of a plain step. A bar that goes
-        slack changes its stiffness over a strain of 1e-4: derivatives of the default gear are off
-        by up to 4e-4 with a ratio of 1, and by 5e-6 with 0.1.
+        slack changes its stiffness over a strain of 1e-4, so derivatives need a closer root.
     full_newton_above_s
         Longer steps make a new matrix in each iteration, because a kept one serves few of them.
         This saves a third of the time of the demo's tow in steps of 3 s.

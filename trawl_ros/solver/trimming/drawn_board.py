@@ -34,9 +34,6 @@ Place = tuple[float, float]
 FIRST_CENTRE_SHIFTS = CENTRE_SHIFTS_PER_CHORD[:1]
 """Shifts of the centre of pressure for the first rigging, in chords; a single one is fast."""
 
-NO_BEGINNING = 'no state with the prior mean'
-"""Reason for boards whose holes do not suit the prior's mean anywhere: no fit could begin."""
-
 
 @dataclass(frozen=True)
 class BoardDraw:
@@ -112,8 +109,7 @@ def draw_board(
         The gear that is towed. Its prior is normal, cut at the bounds.
     places
         Warp length (m) and speed (m/s) of each state in which the gear must be usable: stable,
-        under water, and with boards within the range of their law. With the prior's mean it must be
-        usable at one end of this range at least, where an identification begins.
+        under water, and with boards within the range of their law.
     rng
         Generator of random numbers.
     options
@@ -153,9 +149,6 @@ def draw_board(
             steady = _steady_states(model, places)
         except NoSteadyState as refusal:
             rejected[refusal.reason] += 1
-            continue
-        if not _can_begin(coarse.with_board(points=points), places):
-            rejected[NO_BEGINNING] += 1
             continue
         return DrawnBoard(own, model, steady, rejected)
     reasons = ', '.join(f'{reason} {count}' for reason, count in rejected.most_common())
@@ -215,18 +208,6 @@ def _rigged(model: GearModel, places: Sequence[Place], options: BoardDraw) -> Fl
     limits = hole_limits(model.board)
     trim = ReleasedTrim(evaluations=options.evaluations)
     return released_points(model, held.points, limits, wanted, ends, trim)
-
-
-def _can_begin(model: GearModel, places: Sequence[Place]) -> bool:
-    """Return True if boards of the prior's mean can be towed at any end of the range."""
-    mean = model.with_coefficients(np.array(model.gear.identification.start))
-    for place in _ends(places):
-        try:
-            steady_state(mean, *place)
-        except NoSteadyState:
-            continue
-        return True
-    return False
 
 
 def _ends(places: Sequence[Place]) -> list[Place]:

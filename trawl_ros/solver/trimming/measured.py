@@ -45,10 +45,14 @@ class MeasuredAngles:
     @property
     def met(self) -> bool:
         """True if spread and depth are as wanted, within `MAX_RELATIVE_MISS`."""
+        return self.missed_by < MAX_RELATIVE_MISS
+
+    @property
+    def missed_by(self) -> float:
+        """Larger of the relative differences of spread and depth from those wanted."""
         seen = self.observables
-        return bool(
-            abs(seen.door_spread - self.spread) < MAX_RELATIVE_MISS * self.spread
-            and abs(seen.door_depth - self.depth) < MAX_RELATIVE_MISS * self.depth
+        return max(
+            abs(seen.door_spread / self.spread - 1.0), abs(seen.door_depth / self.depth - 1.0)
         )
 
     @property

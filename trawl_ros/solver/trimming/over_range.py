@@ -32,7 +32,7 @@ CENTRE_SHIFTS_PER_CHORD = 0.01, 0.02, 0.05
 """Uncertain shifts of the centre of pressure in chords, each tried: a larger one leads to a stiffer
 rigging."""
 
-HOLE_LIMITS = 0.47, 0.2, 0.46
+MAX_HOLE_OFFSETS = 0.47, 0.2, 0.46
 """Largest distance of a hole from the centre of gravity: along the chord and off the face, where a
 bracket carries it (both in chords), and along the span (in spans)."""
 
@@ -143,7 +143,7 @@ class RangeTrim:
 
 def hole_limits(board: Board) -> FloatArray:
     """Return the largest distance (3,) of a hole from the centre of gravity, outward frame, m."""
-    return np.multiply(HOLE_LIMITS, (board.chord, board.chord, board.span))
+    return np.multiply(MAX_HOLE_OFFSETS, (board.chord, board.chord, board.span))
 
 
 def trim_over_range(

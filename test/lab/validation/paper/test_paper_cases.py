@@ -53,20 +53,18 @@ DIRECTIONS = (
     'lift_slope',
     'drag_slope',
     'tension_follows',
-    'epsilon_attack',
     'epsilon_inclination',
     'epsilon_rolling',
     'eta_attack',
-    'eta_inclination',
     'eta_rolling',
-    'depth_by_epsilon',
     'lift_growth',
     'growth_door_depth',
     'growth_net_depth',
     'lean_growth',
     'upward_growth',
 )
-"""Sentences that hold for the coarser net of the small version too."""
+"""Sentences that hold for the coarser net of the small version too. The report states others as
+misses: ε +5° raises α by 2.8° only, η +5° lowers δ by 0.4°, and ζ changes depth more than ε."""
 
 
 @pytest.mark.timeout(120)

@@ -10,7 +10,7 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.studies.flume.states import BRIDLE, SHACKLE, SWEEP, TRUNCATED, FlumeState
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.net.twine_drag import VISCOSITY
+from trawl_ros.model.net.wake import VISCOSITY
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 

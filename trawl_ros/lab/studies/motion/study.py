@@ -171,7 +171,7 @@ def _method(plan: MotionStudyPlan) -> str:
         'A trial draws the twelve coefficients from the prior of the gear file, and the added mass '
         'of the boards, until the plant can be towed with them: in all its steady states as in '
         'the study of identification, and in time. It is towed along the commands of the scenario '
-        'demo, five states in 52 minutes, in steps of 1 s, and read by the default instruments, '
+        'demo, five states in 59 minutes, in steps of 1 s, and read by the default instruments, '
         'whose counters and spread sensor are wrong by another amount after each command; offset '
         'and scale of each sensor are drawn for each trial, as the channel table states them. Its '
         'steady windows are fitted as ever; then all of the tow is, from there on, as `trawl '

@@ -72,11 +72,11 @@ STATES = (
 """Cases of nothing but the gear."""
 
 COMPANY = (
-    SonarCase('500 m, a few fish between the ropes', 500.0, 2.1, fish=Fish(30, 0, 30, 25, 0.3)),
-    SonarCase('500 m, dense fish between the ropes', 500.0, 2.1, fish=Fish(35, 3, 25, 20, 3.0)),
-    SonarCase('500 m, fish from there to below the net', 500.0, 2.1, fish=Fish(60, 0, 60, 40, 0.1)),
-    SonarCase('500 m, fish all around the net', 500.0, 2.1, fish=Fish(40, 0, 200, 100, 0.05)),
-    SonarCase('500 m, seabed 15 m below the footrope', 500.0, 2.1, seabed=80.0),
+    SonarCase('500 m, a few fish between the ropes', 500.0, 2.1, fish=Fish(45, 0, 30, 30, 0.3)),
+    SonarCase('500 m, dense fish between the ropes', 500.0, 2.1, fish=Fish(50, 3, 30, 25, 3.0)),
+    SonarCase('500 m, fish from there to below the net', 500.0, 2.1, fish=Fish(88, 0, 60, 50, 0.1)),
+    SonarCase('500 m, fish all around the net', 500.0, 2.1, fish=Fish(55, 0, 200, 140, 0.1)),
+    SonarCase('500 m, seabed 15 m below the footrope', 500.0, 2.1, seabed=109.0),
 )
 """Cases with fish or the seabed in view."""
 

@@ -20,7 +20,13 @@ from trawl_ros.lab.validation.panels.published import (
     netting_of,
     published_panels,
 )
-from trawl_ros.lab.validation.panels.whole_nets import HIGH, LOW, NETS, nets_table, whole_nets
+from trawl_ros.lab.validation.panels.whole_nets import (
+    LEAST_SHARE_OF_REID,
+    MOST_SHARE_OF_MACLENNAN,
+    NETS,
+    nets_table,
+    whole_nets,
+)
 from trawl_ros.report.pictures import Drawing
 
 GEAR = 'krill_800'
@@ -127,7 +133,8 @@ def run(small: bool) -> Findings:
     inside = [flag for net in nets for flag in net.inside]
     rows += [
         MeasuredValue(
-            f'whole nets as built between {LOW:g} of Reid and {HIGH:g} of MacLennan',
+            f'whole nets as built between {LEAST_SHARE_OF_REID:g} of Reid and '
+            f'{MOST_SHARE_OF_MACLENNAN:g} of MacLennan',
             100.0 * float(np.mean(inside)),
             '%',
             at_least(100.0),

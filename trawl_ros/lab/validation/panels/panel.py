@@ -7,8 +7,7 @@ from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.model.bar_pass import water_of
 from trawl_ros.model.line import BarMotion, BarProperties, drag
 from trawl_ros.model.lump_pass import add_sheet_forces
-from trawl_ros.model.net.twine_drag import viscous, viscous_knots
-from trawl_ros.model.net.wake import exposure_of, sheet
+from trawl_ros.model.net.wake import exposure_of, sheet, viscous, viscous_knots
 from trawl_ros.model.water import Water
 
 

@@ -20,10 +20,10 @@ NETS = {'krill_800': 500.0, 'krill_1420': 300.0, 'krill_1600': 300.0, 'harstad_1
 TOWED = (2.0, 2.5, 3.0, 4.0)
 """Speeds (knots) of the equilibria."""
 
-LOW, HIGH = 0.85, 1.15
+LEAST_SHARE_OF_REID, MOST_SHARE_OF_MACLENNAN = 0.85, 1.15
 """Shares of Reid's drag and of MacLennan's between which that of a net is asked to lie."""
 
-FINENESS = 0.5
+NET_FINENESS_FACTOR = 0.5
 """Fineness of the nets in equilibrium, as a share of that of the files."""
 
 
@@ -50,7 +50,9 @@ class WholeNet:
     def inside(self) -> list[bool]:
         """Flags of the speeds as built at which the drag is as large as asked for."""
         return [
-            LOW * reid(self.area, knots) <= drag <= HIGH * maclennan(self.area, knots)
+            LEAST_SHARE_OF_REID * reid(self.area, knots)
+            <= drag
+            <= MOST_SHARE_OF_MACLENNAN * maclennan(self.area, knots)
             for knots, drag in self.built.items()
         ]
 
@@ -63,7 +65,7 @@ def whole_nets(names: Sequence[str]) -> list[WholeNet]:
         model = build_model(gear)
         area = sum(bar.area * bar.rest for bar in model.net_mesh.bars)
         built = {knots: drag_of_model(model, knots) for knots in DRAG_SPEEDS_KN}
-        coarse = build_model(gear.refined(net=FINENESS))
+        coarse = build_model(gear.refined(net=NET_FINENESS_FACTOR))
         nets.append(WholeNet(name, float(area), built, _towed(coarse, NETS[name])))
     return nets
 

@@ -27,7 +27,7 @@ def run(small: bool) -> Findings:
             key='windows',
         ),
         MeasuredValue(
-            'the fit comes to rest',
+            'the fit converges',
             float(fit.estimate.converged),
             target=within(0.0, of=1.0),
             note=fit.estimate.reason,

@@ -31,7 +31,7 @@ STAND_STILL = EstimatorOptions(tolerance=1e9)
 
 class _Remembering(Predictor):
     """Predictor that keeps the boards' mean attack angle (rad), newest for each input: of the
-    estimate, once the fit has come to rest.
+    estimate, once the fit has converged.
     """
 
     def __init__(self, model: GearModel) -> None:
