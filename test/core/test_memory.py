@@ -6,7 +6,7 @@ import sys
 import pytest
 from dask import config
 
-from trawl_ros.core.memory import OF_DASK
+from trawl_ros.core.memory import DASK_VARIABLES
 
 LOOP = """
 import resource
@@ -46,5 +46,5 @@ def test_what_dask_sets_for_its_workers_is_no_setting_of_the_user() -> None:
     import distributed  # noqa: F401  its configuration
 
     own = config.get('distributed.nanny.pre-spawn-environ')
-    assert {name: str(own[name]) for name in OF_DASK} == OF_DASK
-    assert int(_run(KEEP, **OF_DASK)) < 100
+    assert {name: str(own[name]) for name in DASK_VARIABLES} == DASK_VARIABLES
+    assert int(_run(KEEP, **DASK_VARIABLES)) < 100

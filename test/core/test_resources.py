@@ -102,7 +102,7 @@ def test_no_data_at_all_is_said_in_one_sentence(tmp_path):
 
 
 def test_an_unknown_name_is_answered_with_the_known_ones():
-    with pytest.raises(TrawlError, match=r'no such file or folder; there are: .*\bgear\b'):
+    with pytest.raises(TrawlError, match=r'gaer.*\bgear\b'):
         share_path('config', 'gaer')
 
 
@@ -118,12 +118,12 @@ def test_an_unknown_name_is_answered_with_the_known_ones():
 def test_files_of_the_package_are_named_alike(load, known, error, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     load(known)
-    with pytest.raises(error, match=r'^nonesuch: neither a file nor a name .*there are: '):
+    with pytest.raises(error, match=rf'^nonesuch: .*\b{known}\b'):
         load('nonesuch')
 
 
 @pytest.mark.parametrize('name', ['shakedwn', 'shake_down', 'demoo'])
 def test_a_name_that_is_nearly_one_of_them_is_answered_with_that_one(name):
     known = 'demo' if name.startswith('demo') else 'shakedown'
-    with pytest.raises(ScenarioError, match=f'did you mean {known}\\?$'):
+    with pytest.raises(ScenarioError, match=rf'\b{known}\b'):
         load_scenario(name)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from trawl_ros.api.gear_check import BETWEEN
+from trawl_ros.api.gear_check import BRIDLE_SUFFIXES
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import bar_tensions, forces, linearised, points_of
 from trawl_ros.model.gear_model import GearModel, build_model
@@ -52,7 +52,7 @@ def test_the_sweep_pulls_as_hard_as_the_bridles_behind_it(
     points = points_of(model, found.state, found.tow).positions
     pull = {}
     for name, ends, bars in model.layout.lines:
-        if name.startswith('port') and name.endswith(BETWEEN):
+        if name.startswith('port') and name.endswith(BRIDLE_SUFFIXES):
             bar, way = (bars[-1], -1) if name.endswith('_sweep') else (bars[0], 1)
             a, b = (ends[-2], ends[-1]) if way < 0 else (ends[0], ends[1])
             along = (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])

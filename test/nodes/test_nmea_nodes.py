@@ -263,7 +263,7 @@ def test_set_points_drive_the_winches_within_limits_and_hold_when_they_cease(gra
     opened(graph, ship, f'udp://:{port}')
     say(port, 'PTRWL,410.0,M,411.0,M')
     refused = 'not understood: a set point that is refused: '
-    unknown = f'{refused}a port warp before its counter is known'
+    unknown = f'{refused}port warp: expected a reading of its counter first'
     graph.until(lambda: unknown in ship.report('sentences').values)
     # The counters are those of the ship that is commanded.
     winches = graph.add(lambda **given: TrawlNode('winches', namespace='heard', **given))
@@ -318,7 +318,10 @@ def test_set_points_that_leave_something_out_are_refused_and_the_node_goes_on(
     opened(graph, ship, f'udp://:{port}')
     say(port, 'PXYZS,4.0', 'PXYZR,1.0')
     refused = 'not understood: a set point that is refused: '
-    reasons = {f'{refused}a rate of turn beyond 0.02 rad/s', f'{refused}a speed beyond 0 to 4 m/s'}
+    reasons = {
+        f'{refused}rate of turn: expected at most 0.02 rad/s',
+        f'{refused}speed: expected 0 to 4 m/s',
+    }
     graph.until(lambda: reasons <= ship.report('sentences').values.keys())
     assert ship.commands == []
 

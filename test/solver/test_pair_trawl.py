@@ -108,14 +108,14 @@ def test_slopes_are_those_of_the_forces(steady: SteadyState, pair_gear: GearReco
 
 
 def test_ships_too_far_apart_are_refused(pair_gear: GearRecord) -> None:
-    with pytest.raises(NoSteadyState, match='expected ships closer together or more warp'):
+    with pytest.raises(NoSteadyState, match='ships 1000 m apart'):
         seen(apart(pair_gear, 1000.0))
 
 
 def test_what_needs_boards_says_so(pair_gear: GearRecord) -> None:
-    with pytest.raises(GearError, match='has no boards, whose fastening points'):
+    with pytest.raises(GearError, match='no boards'):
         trim(build_model(pair_gear), attack=0.3, inclination=0.2, warp_length=WARP, speed=SPEED)
-    with pytest.raises(GearError, match='has no boards, for whose coefficients'):
+    with pytest.raises(GearError, match='no boards'):
         plan_for(pair_gear)
 
 

@@ -8,12 +8,13 @@ from trawl_ros.model.assembly import forces, linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver import patches, stepper
 from trawl_ros.solver.equilibrium import SteadyState
-from trawl_ros.solver.frontal.one_front import dense_solution
-from trawl_ros.solver.patches import NO_PATCH, ImplicitStep, balanced, grown_patch
-from trawl_ros.solver.stepper import SCHEME, Step, at_rest
+from trawl_ros.solver.linear.fronts import dense_solution
+from trawl_ros.solver.patches import NO_PATCH, ImplicitStep, PatchOptions, balanced, grown_patch
+from trawl_ros.solver.stepper import SCHEME, Step, StepperOptions, at_rest
 
 H = 0.2
 ENOUGH = 1e-9
+OF_SMALL_GEARS = PatchOptions(min_gear_nodes=0, max_fraction=1.0)
 
 
 @pytest.fixture
@@ -66,26 +67,25 @@ def test_a_balanced_patch_has_no_force_left_and_moves_nothing_else(
 
 
 def test_a_patch_without_balance_stays_as_it_was(
-    model: GearModel, steady: SteadyState, step: ImplicitStep, patch: np.ndarray, monkeypatch
+    model: GearModel, steady: SteadyState, step: ImplicitStep, patch: np.ndarray
 ) -> None:
-    monkeypatch.setattr(patches, 'ITERATIONS', 1)
     found, flung = steady.equilibrium, np.ones(model.dof)
     state = Step(at_rest(found.state), H).state(flung)
-    assert balanced(model, state, found.tow, step, flung, patch) is flung
+    once = PatchOptions(iterations=1)
+    assert balanced(model, state, found.tow, step, flung, patch, once) is flung
 
 
-def test_a_patch_grows_by_nodes_of_large_corrections(model: GearModel, monkeypatch) -> None:
+def test_a_patch_grows_by_nodes_of_large_corrections(model: GearModel) -> None:
     correction = np.zeros(model.dof)
     kite = model.layout.kite.nodes
     correction[3 * np.array([7, 9, kite[0]])] = 1.0
     correction[3 * 8] = 0.001
     assert len(grown_patch(model, NO_PATCH, correction, ENOUGH)) == 0
-    monkeypatch.setattr(patches, 'LEAST_NODES', 0)
-    monkeypatch.setattr(patches, 'PART', 1.0)
-    assert grown_patch(model, NO_PATCH, correction, ENOUGH).tolist() == [7, 9]
-    assert grown_patch(model, np.array([8]), correction, ENOUGH).tolist() == [7, 8, 9]
+    given = correction, ENOUGH, OF_SMALL_GEARS
+    assert grown_patch(model, NO_PATCH, *given).tolist() == [7, 9]
+    assert grown_patch(model, np.array([8]), *given).tolist() == [7, 8, 9]
     everywhere = np.ones(model.dof)
-    assert len(grown_patch(model, np.array([8]), everywhere, ENOUGH)) == 0
+    assert len(grown_patch(model, np.array([8]), everywhere, ENOUGH, OF_SMALL_GEARS)) == 0
 
 
 def test_a_tow_with_patches_is_that_without(
@@ -94,12 +94,10 @@ def test_a_tow_with_patches_is_that_without(
     haul = haul_of(model, 40.0, steady.equilibrium)
     without = haul.run(H)
     calls = []
-    monkeypatch.setattr(patches, 'LEAST_NODES', 0)
-    monkeypatch.setattr(patches, 'PART', 1.0)
     monkeypatch.setattr(
-        stepper, 'balanced', lambda *given: calls.append(len(given[-1])) or balanced(*given)
+        stepper, 'balanced', lambda *given: calls.append(len(given[-2])) or balanced(*given)
     )
-    with_patches = haul.run(H)
+    with_patches = haul.run(H, options=StepperOptions(patches=OF_SMALL_GEARS))
     assert calls
     ranges = np.ptp(without.seen, axis=0)
     assert (np.abs(with_patches.seen - without.seen).max(axis=0) / ranges).max() < 1e-4

@@ -37,7 +37,7 @@ def test_gear_that_breaks_the_surface_is_refused(
     assert time.process_time() - before < 20.0
 
 
-@pytest.mark.parametrize('speed', [0.3, 0.5])
+@pytest.mark.parametrize('speed', [0.5, 0.6])
 def test_gear_that_is_towed_too_slowly_is_refused_in_bounded_time(
     model: GearModel, speed: float
 ) -> None:
@@ -51,14 +51,15 @@ def test_a_tow_slowed_down_is_refused_from_where_it_was(
     model: GearModel, steady: SteadyState
 ) -> None:
     slow = find_equilibrium(model, OperatingPoint(500.0, 500.0, 1.8), steady.equilibrium)
-    with pytest.raises(NoSteadyState, match=r'the branch from 1\.8 m/s was followed to [01]\.'):
+    with pytest.raises(NoSteadyState, match=r'warp 500 m at 0\.5 m/s.* 1\.8 m/s.* [01]\.\d+ m/s'):
         find_equilibrium(model, OperatingPoint(500.0, 500.0, 0.5), slow)
 
 
 def test_a_collapsed_board_is_refused(model: GearModel) -> None:
     turned = model.with_board(installation=(np.radians(-20.0), 0.0, 0.0))
-    with pytest.raises(NoSteadyState, match='only a collapsed state was found'):
+    with pytest.raises(NoSteadyState) as caught:
         steady_state(turned, 500.0, 2.1)
+    assert caught.value.reason == 'collapsed'
 
 
 def test_a_board_with_far_other_forces_is_refused_with_its_moments() -> None:
@@ -68,7 +69,7 @@ def test_a_board_with_far_other_forces_is_refused_with_its_moments() -> None:
     )
     netting = (gear := load_gear('kaifuha')).netting.model_copy(update={'around': 24})
     board = build_model(gear.model_copy(update={'netting': netting})).with_coefficients(drawn)
-    with pytest.raises(NoSteadyState, match=r'boards do not stay upright.*kN m upward') as caught:
+    with pytest.raises(NoSteadyState, match=r'\d kN m .*\d kN m .*\d kN m') as caught:
         steady_state(board, 800.0, 2.0)
     assert caught.value.reason == 'no balance'
 
@@ -76,8 +77,9 @@ def test_a_board_with_far_other_forces_is_refused_with_its_moments() -> None:
 def test_a_board_beyond_the_range_of_its_law_is_refused(model: GearModel) -> None:
     # The warp pulls so far aft that the boards turn across the flow, where eq. 14 does not hold.
     behind = model.with_board(points=model.board.points - [[0.3, 0.0, 0.0], [0.0] * 3, [0.0] * 3])
-    with pytest.raises(NoSteadyState, match=r'outside the range of its law \(40°\)'):
+    with pytest.raises(NoSteadyState, match='40°') as caught:
         steady_state(behind, 500.0, 2.1)
+    assert caught.value.reason == 'outside law'
 
 
 def test_a_shape_that_still_moves_at_another_speed_gives_no_state_of_that_speed(
@@ -94,7 +96,7 @@ def test_why_a_state_is_refused_is_also_said_in_a_word(
     model: GearModel, steady: SteadyState
 ) -> None:
     turned = model.with_board(installation=(np.radians(-20.0), 0.0, 0.0))
-    with pytest.raises(NoSteadyState, match=r'outward normals -\d') as collapsed:
+    with pytest.raises(NoSteadyState, match=r' -\d+\.\d') as collapsed:
         steady_state(turned, 500.0, 2.1, start=steady.equilibrium)
     with pytest.raises(NoSteadyState) as surfaced:
         steady_state(model, 200.0, 3.5)
@@ -108,7 +110,7 @@ def test_heavy_boards_are_told_with_the_speed_at_which_their_branch_folds_back(
     netting = gear.netting.model_copy(update={'around': 12})
     heavy = build_model(gear.model_copy(update={'board': board, 'netting': netting}))
     before = time.process_time()
-    folds = r'no steady state below 2\.\d+ m/s, where the branch from 3\.\d+ m/s folds back'
+    folds = r' 2\.\d+ m/s.* 3\.\d+ m/s'
     with pytest.raises(NoSteadyState, match=folds) as lost:
         steady_state(heavy, 500.0, 2.1)
     assert lost.value.reason == 'fold'
@@ -118,10 +120,10 @@ def test_heavy_boards_are_told_with_the_speed_at_which_their_branch_folds_back(
 def test_of_what_is_unstable_the_growing_motion_is_named(default_model: GearModel) -> None:
     turned = default_model.with_board(installation=(np.radians(15.0), 0.0, 0.0))
     start = find_equilibrium(default_model, OperatingPoint(500.0, 500.0, 2.1))
-    with pytest.raises(NoSteadyState, match='heave of one board against the other, swing') as told:
+    with pytest.raises(NoSteadyState, match='heave of one board against the other') as told:
         steady_state(turned, 500.0, 2.1, start=start)
+    assert told.value.reason == 'unstable'
     assert told.value.remedy.startswith('`trawl gear state kaifuha --warp 500 --speed 2.1`')
-    assert told.value.remedy.endswith(' computes what would make it usable')
     assert getattr(told.value, '__notes__', []) == [told.value.remedy]
     assert sentence_of(told.value) == f'{told.value}\n{told.value.remedy}'
 
@@ -129,7 +131,7 @@ def test_of_what_is_unstable_the_growing_motion_is_named(default_model: GearMode
 def test_of_a_gear_with_a_file_of_its_own_the_command_asks_for_the_file(gear: GearRecord) -> None:
     mine = gear.model_copy(update={'name': '../mine'})
     told = remedy_command(mine, OperatingPoint(410.0, 390.0, 1.5))
-    assert told.startswith("`trawl gear state GEAR --warp 400 --speed 1.5`, with the gear's file")
+    assert told.startswith('`trawl gear state GEAR --warp 400 --speed 1.5`')
 
 
 def test_a_gear_that_surfaces_needs_no_command(model: GearModel) -> None:
@@ -144,7 +146,7 @@ def test_boards_that_do_not_stay_upright_are_told_with_the_moments_on_them(
 ) -> None:
     # The warp pulls behind the centre of pressure, which turns the leading edge outward.
     behind = model.with_board(points=model.board.points - [[0.5, 0.0, 0.0], [0.0] * 3, [0.0] * 3])
-    with pytest.raises(NoSteadyState, match=r'turned by .* and \d+\.\d kN m outward') as lost:
+    with pytest.raises(NoSteadyState, match=r'\d kN m .*\d kN m .*\d kN m') as lost:
         steady_state(behind, 500.0, 2.1)
     assert lost.value.reason == 'no balance'
 

@@ -5,16 +5,14 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-import pytest
 
 from trawl_ros.lab.validation.closed_forms.free_rotation import momentum_and_energy, spinning
 from trawl_ros.model.assembly import forces, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import Tow
-from trawl_ros.solver import stepper as stepper_module
 from trawl_ros.solver.equilibrium import SteadyState
-from trawl_ros.solver.stepper import Motion, Stepper, at_rest
+from trawl_ros.solver.stepper import Motion, Stepper, StepperOptions, at_rest
 
 Boundary = Callable[[float], Tow]
 
@@ -23,8 +21,12 @@ def towed_on(tow: Tow, t: float) -> Tow:
     return replace(tow, blocks=tow.blocks + t * tow.block_velocities)
 
 
+TO_ROUNDING = StepperOptions(tolerance=1e-8)
+"""Leaves of a step's error only what the method itself makes."""
+
+
 def run(model: GearModel, start: Motion, boundary: Boundary, h: float, end: float) -> Motion:
-    stepper, motion = Stepper(model), start
+    stepper, motion = Stepper(model, TO_ROUNDING), start
     for k in range(round(end / h)):
         motion = stepper.step(motion, boundary((k + 1) * h), h)
     return motion
@@ -52,13 +54,6 @@ def manoeuvre(tow: Tow, t: float) -> Tow:
     return replace(towed_on(tow, t), lengths=tow.lengths + share * out, length_rates=share * rate)
 
 
-@pytest.fixture
-def solved_to_rounding(monkeypatch) -> None:
-    """Leave of a step's error only what the method itself makes."""
-    monkeypatch.setattr(stepper_module, 'TOLERANCE', 1e-8)
-
-
-@pytest.mark.usefixtures('solved_to_rounding')
 def test_it_converges_with_the_square_of_the_step(model: GearModel, steady: SteadyState) -> None:
     found = steady.equilibrium
     ends = [
@@ -76,7 +71,6 @@ def test_it_converges_with_the_square_of_the_step(model: GearModel, steady: Stea
     assert first < 0.01
 
 
-@pytest.mark.usefixtures('solved_to_rounding')
 def test_a_free_board_keeps_its_energy_and_angular_momentum() -> None:
     model, state, tow = spinning()
     inertia = model.pattern.matrix(mass(model, state, tow)).toarray()

@@ -8,7 +8,7 @@ from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
-from trawl_ros.solver.relax import TOLERANCE
+from trawl_ros.solver.relax import FORCE_TOLERANCE
 from trawl_ros.solver.sensitivity import sensitivities
 from trawl_ros.solver.warm_start import warm_start, warm_start_in_parts
 
@@ -49,7 +49,7 @@ def test_a_warm_start_finds_the_root_that_a_cold_one_finds(
 ) -> None:
     found = warm_start(model, known.state, known.tow, steady_tow(model, point))
     assert found is not None
-    assert found[2] < TOLERANCE
+    assert found[2] < FORCE_TOLERANCE
     assert apart(find_equilibrium(model, point, known), find_equilibrium(model, point)) < SAME
 
 
@@ -89,7 +89,7 @@ def test_another_bridle_is_reached_although_it_would_be_slack_or_torn_at_once(
     other = replace(model, rest=rest)
     found = warm_start(other, known.state, known.tow, known.tow, known.tangent)
     assert found is not None
-    assert found[2] <= TOLERANCE
+    assert found[2] <= FORCE_TOLERANCE
     # What did not pass the lengths on gave up at once, and then took ninety iterations and more.
     assert found[1] < 15
     assert apart(find_equilibrium(other, AT, known, cold=False), find_equilibrium(other, AT)) < SAME
@@ -123,9 +123,9 @@ def test_a_change_from_which_newton_turns_away_is_made_in_parts(
     way = known.state, known.tow, steady_tow(model, point)
     whole, parts = warm_start(model, *way), warm_start_in_parts(model, *way)
     assert whole is not None
-    assert whole[2] > TOLERANCE
+    assert whole[2] > FORCE_TOLERANCE
     assert parts is not None
-    assert parts[2] <= TOLERANCE
+    assert parts[2] <= FORCE_TOLERANCE
     assert apart(find_equilibrium(model, point, known), find_equilibrium(model, point)) < SAME
 
 

@@ -1,4 +1,4 @@
-"""Check of a gear file before anything is solved: figures, findings, and pictures."""
+"""Check of a gear file without a solution: main quantities, findings and drawings."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -21,11 +21,11 @@ from trawl_ros.model.rigging import ropes_of
 if TYPE_CHECKING:
     from trawl_ros.model.state import State, Tow
 
-BETWEEN = '_bridle', '_sweep', '_backstrop'
+BRIDLE_SUFFIXES = '_bridle', '_sweep', '_backstrop'
 """Ends of the names of ropes between boards and net."""
 
-SPEEDS = (2.0, 3.0, 4.0)
-"""Knots at which the drag is looked up."""
+DRAG_SPEEDS_KN = (2.0, 3.0, 4.0)
+"""Speeds at which the drag is compared."""
 
 
 @dataclass(frozen=True)
@@ -35,17 +35,17 @@ class GearCheck:
     Attributes
     ----------
     gear, model
-        The file's record, and the model built of it; nothing is solved.
+        Record of the file, and its model, without a solution.
     twine_area
-        Of all netting, twine length times diameter, m².
+        Twine area of all netting, length times diameter, m².
     weights
-        Weight in water (N) by part of the gear, warps left out; floats count negative.
+        Weight in water (N) by part of the gear, without warps; negative for floats.
     drag
         Drag of the net (N) by speed (knots) and empirical formula.
     findings
-        Findings of what looks wrong, in the order of the file.
+        Findings, in the order of the file.
     derived
-        Values that the file does not give, by key, as they were taken.
+        Values of keys that the file does not give.
 
     Examples
     --------
@@ -100,7 +100,10 @@ def check_gear(path: str | Path) -> GearCheck:
         model=model,
         twine_area=float(area),
         weights=weights_of(model),
-        drag={knots: {name: band(area, knots) for name, band in BANDS.items()} for knots in SPEEDS},
+        drag={
+            knots: {name: band(area, knots) for name, band in BANDS.items()}
+            for knots in DRAG_SPEEDS_KN
+        },
         findings=findings(gear),
         derived=dict(_derived(raw, gear)),
     )
@@ -118,7 +121,7 @@ def weights_of(model: GearModel) -> dict[str, float]:
     for name, _, numbers in model.layout.lines:
         if name.endswith('_warp'):
             continue
-        part = 'bridles' if name.endswith(BETWEEN) else name
+        part = 'bridles' if name.endswith(BRIDLE_SUFFIXES) else name
         part = {'port_wing_end': 'side ropes', 'starboard_wing_end': 'side ropes'}.get(part, part)
         found[part] = found.get(part, 0.0) + float(heavy[numbers].sum())
     mesh = model.net_mesh
@@ -135,7 +138,7 @@ def weights_of(model: GearModel) -> dict[str, float]:
         for rope in ropes_of(item):
             own = next(numbers for name, _, numbers in model.layout.lines if name == rope)
             force = item.force_on(float(model.rest[own].sum()))
-            if force:  # kites may have none
+            if force:  # a kite may have none
                 found[item.name] = found.get(item.name, 0.0) + force
     if gear.catch is not None:
         fish = gear.catch.mass_kg / gear.catch.density_kg_m3
@@ -147,8 +150,9 @@ def weights_of(model: GearModel) -> dict[str, float]:
 
 
 def drag_of_model(model: GearModel, knots: float) -> float:
-    """Drag (N) of netting, ropes and what hangs on them, without boards, bridles and warps, in the
-    shape in which the net is built, at a speed (knots).
+    """Return the drag (N) of the net in its built shape at a speed (knots).
+
+    It includes netting, ropes and hung items, but no boards, bridles and warps.
     """
     from trawl_ros.solver.first_guess import first_guess
     from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
@@ -159,7 +163,7 @@ def drag_of_model(model: GearModel, knots: float) -> float:
 
 
 def drag_of_net(model: GearModel, state: 'State', tow: 'Tow') -> float:
-    """The same drag (N) in a state of a gear towed along x."""
+    """Return the same drag (N) in a state of a gear towed along x."""
     from trawl_ros.model.assembly import lump_forces, motion_of, points_of
     from trawl_ros.model.line import drag, tension
 
@@ -171,7 +175,7 @@ def drag_of_net(model: GearModel, state: 'State', tow: 'Tow') -> float:
 
 
 def draw_gear(check: GearCheck, folder: Path) -> list[Path]:
-    """Draw the net plan, where the file has one, and the rigged gear as it is built.
+    """Draw the net plan, if the file has one, and the rigged gear as built.
 
     Raises
     ------
@@ -193,8 +197,8 @@ def draw_gear(check: GearCheck, folder: Path) -> list[Path]:
 
 
 def _derived(raw: dict[str, object], gear: GearRecord) -> Iterator[tuple[str, str]]:
-    """Values of the record that the file does not give, ropes of the frame among them."""
-    # Plates stand in for boards and are told by their mass.
+    """Yield values of the record that the file does not give, including ropes of the frame."""
+    # The plates of a pair replace boards and are described by their mass.
     hidden = {'board', 'identification'} if gear.pair is not None else set()
     yield from _missing('', raw, gear.model_dump(mode='json', exclude=hidden))
     plan = gear.netting.plan

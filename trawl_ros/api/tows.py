@@ -20,18 +20,18 @@ from trawl_ros.scenario.scenario import load_scenario
 
 @dataclass(frozen=True)
 class TowedBag:
-    """A bag that `tow` wrote.
+    """Bag written by `tow`.
 
     Attributes
     ----------
     path
-        Of the bag.
+        Path of the bag.
     messages
-        Full topic name → number of messages.
+        Number of messages by full topic name.
     duration_s, planned_s
-        Length of the tow, and of the scenario, s.
+        Duration of the tow, and of the scenario, s.
     complete
-        True if the scenario was towed to its end.
+        True if the tow reached the end of the scenario.
 
     Examples
     --------
@@ -49,12 +49,12 @@ class TowedBag:
 
 
 def simulate(scenario: str | Path) -> Iterator[Truth]:
-    """Tow a scenario, without instruments and without a bag.
+    """Tow a scenario without instruments and bag.
 
     Parameters
     ----------
     scenario
-        A file, or the name of one that comes with the package.
+        File, or name of a scenario of the package.
 
     Yields
     ------
@@ -64,9 +64,9 @@ def simulate(scenario: str | Path) -> Iterator[Truth]:
     Raises
     ------
     ScenarioError
-        If the file is not in order, or the gear cannot be towed that way.
+        If the file has errors, or the gear cannot be towed in this way.
     NoSteadyState
-        If the start is no usable steady state.
+        If the start has no usable steady state.
 
     Examples
     --------
@@ -87,23 +87,23 @@ def tow(
     stopped: Callable[[], bool] = lambda: False,
     on_progress: OnProgress = ignore,
 ) -> TowedBag:
-    """Tow a scenario and record what its instruments report: same seed, same bytes.
+    """Tow a scenario and record the readings of its instruments; a seed gives the same bytes.
 
     Parameters
     ----------
     scenario
-        A file, or the name of one that comes with the package.
+        File, or name of a scenario of the package.
     out
-        Folder of the bag; must not exist yet.
+        New folder for the bag.
     stopped
-        Asked between two moments; where it says yes the bag ends there, whole.
+        Function called between time steps; True ends the bag there, complete.
     on_progress
-        Called as the tow goes on.
+        Function called with the progress.
 
     Returns
     -------
     TowedBag
-        Its path, counts by topic, and how long was towed.
+        Path, number of messages by topic, and duration.
 
     Raises
     ------
@@ -138,14 +138,14 @@ def tow(
 
 
 def read_bag(bag: str | Path, *, namespace: str = NAMESPACE) -> Iterator[Sample]:
-    """Give the readings of a bag's instruments in the order of their log times.
+    """Yield the readings of a bag's instruments in the order of their log times.
 
     Parameters
     ----------
     bag
         Folder or file, MCAP or SQLite, of any ROS 2 distribution; it may be damaged.
     namespace
-        Of the topics.
+        Namespace of the topics.
 
     Yields
     ------

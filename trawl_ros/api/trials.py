@@ -1,6 +1,6 @@
-"""Sea trials: identification and diagnosis from their bags, and the plan of a next one.
+"""Sea trials: identification and diagnosis from bags, and plan of the next trial.
 
-What one of them does without is imported in the others: figures, motion and onsets take their time.
+Imports of figures, motion and onsets are slow, so they stand in the functions that need them.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,11 +32,11 @@ if TYPE_CHECKING:
 DEFAULT_GEAR = 'kaifuha'
 
 OnNote = Callable[[str], None]
-"""Takes a sentence on input that was damaged or not used."""
+"""Function of a sentence on input that is damaged or not used."""
 
 
 def _silent(sentence: str) -> None:
-    """Take no notice of a sentence."""
+    """Ignore a sentence."""
 
 
 def identify(
@@ -54,58 +54,59 @@ def identify(
     on_note: OnNote = _silent,
     on_progress: OnProgress = ignore,
 ) -> 'Report':
-    """Refit the twelve board coefficients of eq. 14 from bags, each of them a tow.
+    """Refit the twelve board coefficients of eq. 14 from bags, one bag per tow.
 
-    Each tow is left out in turn and predicted from the others; with one, its steady states are.
+    For cross-validation each tow is left out in turn and predicted from the others; with a single
+    tow, its steady states are left out.
 
     Parameters
     ----------
     bags
         Folders or files.
     gear
-        The gear as the model has it: a record, a file, or a name.
+        Gear of the model: record, file or name.
     out
-        Folder for page, JSON and figures; none are written without.
+        Folder for report, JSON and figures; nothing is written without it.
     truth
-        Scenario that made the bags, whose coefficients are set beside the estimates.
+        Scenario that made the bags; its coefficients are compared with the estimates.
     prior
-        True if the gear file's prior takes part; else the data decide, within the bounds.
+        True to use the gear file's prior; otherwise only its bounds are used.
     net
-        True if drag and weight of the net are estimated along.
+        True to estimate drag and weight of the net too.
     namespace
-        Of the topics.
+        Namespace of the topics.
     motion
-        True if all of the tows is learned from, hauling and veering included, beside their steady
-        windows, which takes minutes for each hour of tow; ``out`` has the results of the windows
-        meanwhile. False for the windows alone.
+        True to fit the whole tows too, including hauling and veering, which takes minutes per hour
+        of tow; meanwhile ``out`` contains the results of the steady windows. False to fit only the
+        windows.
     scheduler
-        Address of a Dask cluster that reads the bags. A scheduler runs code: it must be trusted.
+        Address of a Dask cluster that reads the bags. It runs code, so it must be trusted.
     force
-        True if results of an earlier run in ``out`` are replaced.
+        True to replace results of an earlier run in ``out``.
     on_note, on_progress
-        Called with what is damaged or not used, and as the work goes on.
+        Functions called with sentences on damaged or unused input, and with the progress.
 
     Returns
     -------
     Report
-        With ``estimate`` of the steady windows (values and covariance, SI), residuals, what was
-        held out; ``motion`` by all of the tows, or ``motion_refused`` with the reason why not.
-        Without one steady window ``estimate`` is that by all of the tows.
+        Report with the ``estimate`` of the steady windows (values and covariance, SI), residuals,
+        and held-out errors. ``motion`` is the fit of the whole tows, or ``motion_refused`` the
+        reason why there is none. Without a steady window, ``estimate`` is that of the whole tows.
 
     Raises
     ------
     TrawlError
-        If no bag has a steady window, or can be learned from in motion, with the reasons, a tow is
-        given twice, or ``out`` holds files already.
+        If no bag has a steady window or can be fitted in motion, with the reasons, a tow is given
+        twice, or ``out`` contains files.
 
     Notes
     -----
-    Several bags are read by processes that import the script which calls this: what that does
-    must stand under ``if __name__ == '__main__':``.
+    Processes that import the calling script read several bags in parallel. Its own work must
+    therefore stand under ``if __name__ == '__main__':``.
 
     Examples
     --------
-    A bag with two steady states of the coarse gear, and nothing but these:
+    A bag with two steady states of the coarse gear:
 
     >>> import trawl_ros
     >>> report = trawl_ros.identify(['tow_1'], gear='coarse.yaml', motion=False)
@@ -132,11 +133,11 @@ def identify(
         unsettled = [one for one in recordings if (one.why_not or '').startswith(NO_WINDOW)]
         if not motion or why_not or not unsettled:
             raise TrawlError('; '.join(reasons))
-        on_note('No bag has a steady window: all of the tow is learned from.')
+        on_note('No bag has a steady window: the whole tow is fitted instead.')
         try:
             learned = learn_from_motion(record, None, unsettled, namespace, on_progress, net=net)
         except TrawlError as error:
-            raise TrawlError(f'{"; ".join(reasons)}; nor in motion: {error}') from error
+            raise TrawlError(f'{"; ".join(reasons)}; and no fit in motion: {error}') from error
         rejections = [recording.rejections for recording in unsettled]
         result = report_in_motion(learned, rejections, known)
         if out is not None:
@@ -184,25 +185,25 @@ def diagnose(
     bags
         Tows to examine: folders or files.
     baseline
-        Tows of when the gear was known to be in order.
+        Tows with the gear in order.
     gear, out, namespace, scheduler, force, on_note, on_progress
-        As in `identify`. Where an effect is named, ``out`` also takes ``model.yaml``.
+        As in `identify`. If an effect is named, ``model.yaml`` is written to ``out`` too.
     onset
-        True if each of ``bags`` is watched for what begins in it, a minute for each hour of tow.
+        True to look in each of ``bags`` for effects that begin in it, a minute per hour of tow.
 
     Returns
     -------
     Diagnosis
-        With ``verdict``, reason, evidence, and the ``repair`` where there is one.
+        Diagnosis with ``verdict``, reason, evidence, and the ``repair`` if there is one.
 
     Raises
     ------
     TrawlError
-        If a bag cannot be read, a tow is given twice, or ``out`` holds files already.
+        If a bag cannot be read, a tow is given twice, or ``out`` contains files.
 
     Examples
     --------
-    Two steady states are too few to tell anything:
+    Two steady states are too few for a verdict:
 
     >>> import trawl_ros
     >>> trawl_ros.diagnose(['tow_1'], gear='coarse.yaml').verdict
@@ -242,32 +243,32 @@ def plan_trial(
     force: bool = False,
     on_progress: OnProgress = ignore,
 ) -> 'TrialPlan':
-    """Plan the trial that tells most about the boards in a given time at sea.
+    """Plan the sea trial that determines the boards best in a given time.
 
     Parameters
     ----------
     gear
-        A file or a name.
+        File or name.
     hours
-        Time at sea.
+        Time at sea, h.
     limits
         Warp lengths (m) and speeds (m/s) to choose from, largest tension (N), depth of water (m).
     out
         Folder for ``plan.json``, the scenario ``trial.yaml`` and a picture.
     force
-        True if results of an earlier run in ``out`` are replaced.
+        True to replace results of an earlier run in ``out``.
     on_progress
-        Called as manoeuvres are explored.
+        Function called with the progress.
 
     Returns
     -------
     TrialPlan
-        The ``trial`` with its legs, what each leg gains, and the paper's sweep beside it.
+        The ``trial`` with its legs, the gain of each leg, and the paper's sweep for comparison.
 
     Raises
     ------
     TrawlError
-        If there is nothing to choose from, or no time for two legs.
+        If there is no possible manoeuvre, or no time for two legs.
 
     Examples
     --------
@@ -293,7 +294,7 @@ def plan_trial(
 def _onsets(
     diagnosis: Diagnosis, paths: Sequence[Path], namespace: str, on_progress: OnProgress
 ) -> 'tuple[OnsetsInTow, ...]':
-    """Onsets in each tow, by the boards as they were fitted, or else by the gear file."""
+    """Find onsets in each tow, with the fitted boards or those of the gear file."""
     from trawl_ros.diagnosis.onset.knowledge import of_gear_file
     from trawl_ros.diagnosis.onset.tows import by_estimate, onsets_in
 
@@ -303,7 +304,7 @@ def _onsets(
         known = by_estimate(diagnosis.base.estimate, windows)
     found = []
     for number, path in enumerate(paths):
-        on_progress(WorkProgress('watching for what begins', number, len(paths), 'tows'))
+        on_progress(WorkProgress('looking for onsets', number, len(paths), 'tows'))
         samples = (sample for _, sample in SampleStream([path], namespace))
         found.append(onsets_in(diagnosis.gear, known, path.name, samples))
     return tuple(found)
@@ -314,7 +315,7 @@ def _gear(gear: str | Path | GearRecord) -> GearRecord:
 
 
 def _reasons(recordings: Sequence[FoundWindows]) -> list[str]:
-    """Sentences on the recordings that cannot be used."""
+    """Return a sentence for each recording that cannot be used."""
     return [
         f'{recording.name}: {recording.why_not}'
         for recording in recordings

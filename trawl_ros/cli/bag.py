@@ -17,28 +17,28 @@ from trawl_ros.core.errors import BagError
 from trawl_ros.records.fields import WaterColumn
 from trawl_ros.sentences.table import load_tables, packaged_systems
 
-FINDINGS = 3
-"""Exit code of ``trawl bag check`` where something was found; 1 is an error, 2 a wrong call."""
+EXIT_FINDINGS = 3
+"""Exit code of ``trawl bag check`` with findings; 1 is an error, 2 wrong usage."""
 
-LOST = 3
-"""Exit code where something was lost; 1 is an error, 2 a wrong call."""
+EXIT_LOST = 3
+"""Exit code of ``trawl bag repair`` with lost messages; 1 is an error, 2 wrong usage."""
 
 JSON_OPTION = click.option('--json', 'as_json', is_flag=True, help='Print JSON for scripts.')
 
 
 @click.group('bag')
 def command() -> None:
-    """Look into bags, check them, repair them, and turn them into tables."""
+    """Inspect, check, repair and export bags."""
 
 
 @command.command('info')
 @click.argument('bag', type=BAG)
 @JSON_OPTION
 def info(bag: Path, as_json: bool) -> None:
-    """Count what can be read in a bag, and say what cannot.
+    """Count the messages of BAG, and list its damage.
 
-    BAG is a bag's folder or one file of it, MCAP or SQLite, of any ROS 2 distribution; it may be
-    damaged.
+    BAG is the folder of a bag or one file of it, MCAP or SQLite, of any ROS 2 distribution. It may
+    be damaged.
     """
     opened = Bag(bag, lenient=True)
     summary = opened.summary()
@@ -58,7 +58,8 @@ def info(bag: Path, as_json: bool) -> None:
     '--require',
     multiple=True,
     metavar='NAME',
-    help=f'A topic, or all of {", ".join(GROUPS)}, that must be there. May be given several times.',
+    help=f'Topic that the bag must contain, or a group: {", ".join(GROUPS)}. May be given several '
+    'times.',
 )
 @NAMESPACE_OPTION
 @JSON_OPTION
@@ -66,47 +67,48 @@ def info(bag: Path, as_json: bool) -> None:
 def check(
     context: click.Context, bag: Path, require: tuple[str, ...], namespace: str, as_json: bool
 ) -> None:
-    """Hold a bag against what it says of itself, and against the project's topics.
+    """Check BAG against its own metadata and against the topics of the project.
 
-    Exit codes: 0 sound, 3 something was found, 1 the bag cannot be looked at.
+    Exit codes: 0 without findings, 3 with findings, 1 if the bag cannot be read.
 
-    Findings are: files that are damaged, cut short or have no index; chunks that fail their
-    checksum; metadata that disagree with the content; and on the project's topics a wrong type,
-    best effort or volatile QoS where more is due, a rate a dozen times off the usual one, pauses
-    of more than ten median intervals, stamps that run backward or repeat, stamps more than 5 s
-    from the log time (and a sweep, for the sonar's), and what --require names and is not there.
+    Findings are files that are damaged, cut short or without an index, chunks with a wrong
+    checksum, and metadata that contradict the content. On the topics of the project, findings are a
+    wrong type, best-effort or volatile QoS where the project requires more, a rate that differs by
+    a factor of 12 from the usual one, gaps of more than ten median intervals, stamps that run
+    backward or repeat, and stamps more than 5 s from the log time (plus a sweep for sonars). Topics
+    of --require that the bag does not contain are findings too.
     """
     done = check_bag(bag, namespace=namespace, required=require)
     if as_json:
         click.echo(check_as_json(done))
     else:
         print_check(done, output_console())
-    context.exit(0 if done.sound else FINDINGS)
+    context.exit(0 if done.sound else EXIT_FINDINGS)
 
 
 @command.command('export')
 @click.argument('bag', type=BAG)
-@click.option('--out', required=True, type=BAG, help='Folder to be made; with --as a file.')
+@click.option('--out', required=True, type=BAG, help='New folder; with --as, new file.')
 @click.option(
     '--topic',
     'topics',
     multiple=True,
     metavar='NAME',
-    help='A topic wanted, e.g. winch/joint_states. May be given several times; by default all.',
+    help='Topic to export, such as winch/joint_states. May be given several times; by default all.',
 )
 @click.option(
     '--array-limit',
     type=click.IntRange(1, 1000),
     default=ARRAY_LIMIT,
     show_default=True,
-    help='Elements up to which an array is spread over columns; longer ones are left out.',
+    help='Longest array that is written to columns; longer ones are left out.',
 )
 @click.option(
     '--as',
     'systems',
     multiple=True,
     metavar='SYSTEM',
-    help='Write sentences of this system in place of tables: '
+    help='Write sentences of this system instead of tables: '
     f'{", ".join(packaged_systems())}, or a YAML file. May be given several times.',
 )
 @click.option(
@@ -114,12 +116,12 @@ def check(
     type=Number(900, 1100, min_open=True, max_open=True),
     default=1025.0,
     show_default=True,
-    help='Density (kg/m3) by which pressures become the depths of sentences.',
+    help='Density of the water (kg/m3) that converts pressure to depth in sentences.',
 )
 @click.option(
     '--every-reading',
     is_flag=True,
-    help='Write each reading as a sentence, also where the system sends them more seldom.',
+    help='Write each reading as a sentence, even if the real system sends fewer.',
 )
 @NAMESPACE_OPTION
 def export(
@@ -132,16 +134,18 @@ def export(
     every_reading: bool,
     namespace: str,
 ) -> None:
-    """Write a bag as CSV, one file per topic, or as a log of sentences.
+    """Export BAG to CSV files, one per topic, or to a log of sentences.
 
-    Columns are named by the path of their field; columns.csv says the unit of each. Times stand
-    there twice, in seconds and in whole nanoseconds. A cell is empty where there is no reading.
-    With --as, a file of the sentences that instruments of other make would have sent.
+    The name of a column is the path of its field; columns.csv lists the units. Times are given in
+    seconds and in whole nanoseconds. A cell without a reading is empty. With --as, the command
+    writes a file of the sentences that instruments of other makers would have sent.
     """
     if systems:
         if topics:
-            raise click.UsageError('--topic and --as: the systems say which topics are wanted')
-        _tell_sentences(
+            raise click.UsageError(
+                '--topic and --as: found both, expected one; the system determines the topics'
+            )
+        _print_sentences(
             write_sentence_log(
                 bag,
                 load_tables(systems),
@@ -165,17 +169,17 @@ def export(
         where = topic.file or 'no file'
         click.echo(f'{topic.rows:8d} rows  {where}')
         for path, reason in topic.left_out.items():
-            click.echo(f'{topic.topic}: {path} is left out, since it {reason}', err=True)
-    click.echo(f'{out / DICTIONARY} says what the columns are')
+            click.echo(f'{topic.topic}: {path} is left out because it {reason}', err=True)
+    click.echo(f'{out / DICTIONARY} describes the columns')
     for problem in done.problems:
         click.echo(f'Damaged: {problem}', err=True)
 
 
-def _tell_sentences(done: SentenceLog) -> None:
+def _print_sentences(done: SentenceLog) -> None:
     for address, count in done.sentences.items():
         click.echo(f'{count:8d}  {address}')
     for topic in done.silent:
-        click.echo(f'No reading of {topic} in the bag', err=True)
+        click.echo(f'The bag has no reading of {topic}', err=True)
     for problem in done.problems:
         click.echo(f'Damaged: {problem}', err=True)
 
@@ -185,17 +189,17 @@ def _tell_sentences(done: SentenceLog) -> None:
 @click.option(
     '--out',
     type=FOLDER,
-    help=f'Folder to be made; by default beside the bag, with {SUFFIX} behind its name.',
+    help=f'New folder; by default that of the bag with {SUFFIX} appended.',
 )
 @click.pass_context
 def repair(context: click.Context, bag: Path, out: Path | None) -> None:
-    """Make a whole bag of one that was cut short or damaged, or whose metadata are wrong.
+    """Make a complete bag from one that was cut short, is damaged, or has wrong metadata.
 
-    BAG is a bag's folder or one MCAP file of it, and is left as it is. All that passes its
-    checksum goes into a new bag, with indexes and metadata.
+    BAG is the folder of a bag or one MCAP file of it, and is not changed. All data with a correct
+    checksum go into a new bag, with indexes and metadata.
 
-    Exit codes: 0 nothing was lost, or there was nothing to repair; 3 messages were lost, or may
-    have been in what could not be read; 1 nothing could be saved.
+    Exit codes: 0 if nothing was lost or there was nothing to repair, 3 if messages were lost or
+    may have been in unreadable parts, 1 if nothing could be saved.
     """
     with ProgressDisplay(error_console()) as display:
         done = repair_bag(bag, out, on_progress=display)
@@ -211,5 +215,5 @@ def repair(context: click.Context, bag: Path, out: Path | None) -> None:
     if done.lost:
         click.echo(f'Lost: {sum(done.lost.values())} messages that the bag had counted')
     elif done.unread:
-        click.echo('Lost: what may have been in the damaged parts was not counted by the bag')
-    context.exit(0 if done.whole else LOST)
+        click.echo('Lost: unknown; the bag did not count the messages in its damaged parts')
+    context.exit(0 if done.whole else EXIT_LOST)

@@ -119,7 +119,7 @@ def print_check(check: BagCheck, console: Console) -> None:
     for group, names in check.missing.items():
         if names:
             missing = 'all' if len(names) == len(GROUPS[group]) else ', '.join(names)
-            console.print(escape(f'Not in it of {group}: {missing}'), soft_wrap=True)
+            console.print(escape(f'Missing topics of {group}: {missing}'), soft_wrap=True)
     for finding in check.findings:
         where = f'{finding.topic} ' if finding.topic else ''
         console.print(escape(f'Found ({finding.kind}): {where}{finding.text}'), soft_wrap=True)

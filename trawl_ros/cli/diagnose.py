@@ -21,14 +21,14 @@ from trawl_ros.diagnosis.report.sentences import headline, sentences
 from trawl_ros.diagnosis.report.what_to_do import what_to_do
 
 EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_TESTABLE': 11}
-"""Exit codes by verdict; 1 and 2 are for errors of input and usage."""
+"""Exit codes by verdict; 1 is an input error, 2 wrong usage."""
 
 
 @click.command('diagnose')
 @click.argument('bags', nargs=-1, required=True, type=BAG)
 @click.option(
-    '--baseline', multiple=True, type=BAG, help='A bag from when the gear was known to be in '
-    'order; may be given several times.',
+    '--baseline', multiple=True, type=BAG, help='Bag of a tow with the gear in order. May be '
+    'given several times.',
 )  # fmt: skip
 @click.option('--out', required=True, type=FOLDER, help='Folder for the reports and the model.')
 @GEAR_OPTION
@@ -36,8 +36,8 @@ EXIT = {'NO_DISCREPANCY': 0, 'NAMED': 10, 'AMBIGUOUS': 10, 'UNKNOWN': 10, 'NOT_T
 @SCHEDULER_OPTION
 @FORCE_OPTION
 @click.option(
-    '--onset', is_flag=True, help='Watch each of BAGS for what begins in it; a minute or more for '
-    'each hour of tow.',
+    '--onset', is_flag=True, help='Look in each bag for effects that begin during the tow. Takes a '
+    'minute or more per hour of tow.',
 )  # fmt: skip
 @click.pass_context
 def command(
@@ -51,11 +51,11 @@ def command(
     force: bool,
     onset: bool,
 ) -> None:
-    """Find where model and BAGS disagree, and name what the model lacks.
+    """Find where the model and BAGS disagree, and name the effect that the model lacks.
 
-    Writes report.html, report.md, diagnosis.json and figures, and where an effect is named
-    model.yaml, the gear with the effect in it. Ends with 0 where there is no discrepancy, 10 where
-    there is one, 11 where these bags cannot tell.
+    The command writes report.html, report.md, diagnosis.json and figures. If an effect is named, it
+    also writes model.yaml, the gear with this effect. The exit code is 0 without a discrepancy, 10
+    with one, and 11 if these bags do not decide.
     """
     console = error_console()
     with ProgressDisplay(console) as display:
@@ -76,7 +76,7 @@ def command(
 
 
 def _print(diagnosis: Diagnosis, out: Path) -> None:
-    # Figures take their time to load, for which a command that is refused need not wait.
+    # Imported here: figures load slowly, and a refused command does not need them.
     from trawl_ros.diagnosis.report.writing import MODEL
 
     console = Console(highlight=False, soft_wrap=True)
@@ -86,4 +86,4 @@ def _print(diagnosis: Diagnosis, out: Path) -> None:
     console.print(f'What to do now: {what_to_do(diagnosis)}', markup=False)
     console.print(f'Report: {out / "report.html"}', markup=False)
     if diagnosis.repair is not None:
-        console.print(f'The gear with that in it: {out / MODEL}', markup=False)
+        console.print(f'Gear with this effect: {out / MODEL}', markup=False)

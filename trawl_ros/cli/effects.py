@@ -11,9 +11,9 @@ from trawl_ros.effects.registry import catalogue
 @click.command('effects')
 @click.argument('names', nargs=-1)
 def command(names: tuple[str, ...]) -> None:
-    """List the effects that can be found, or tell all of some NAMES.
+    """List all effects of the catalogue, or only NAMES.
 
-    Each may stand in a gear file under `effects`.
+    A gear file can contain each of them under `effects`.
     """
     known = catalogue()
     for name in names:

@@ -9,8 +9,8 @@ from trawl_ros.cli.options import FILE, FOLDER, SPEED, WARP
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console, plain_table
 
-WRONG = 3
-"""Exit code of ``trawl gear check`` where something looks wrong; 1 is an error, 2 a wrong call."""
+EXIT_FINDINGS = 3
+"""Exit code of ``trawl gear check`` with findings; 1 is an error, 2 wrong usage."""
 
 
 @click.group('gear')
@@ -20,13 +20,13 @@ def command() -> None:
 
 @command.command('check')
 @click.argument('gear', metavar='GEAR')
-@click.option('--out', type=FOLDER, help='Folder for pictures of the net plan and the rigged gear.')
+@click.option('--out', type=FOLDER, help='Folder for drawings of the net plan and the rigged gear.')
 def check(gear: str, out: Path | None) -> None:
-    """Load GEAR and say what it comes to, before anything is solved.
+    """Check GEAR without solving it, and print its main quantities.
 
-    GEAR is a gear file or the name of one that comes with the package. Prints twine area, weights
-    in water, the drag that empirical formulas expect, what was derived, and what looks wrong; ends
-    with code 3 if anything does.
+    GEAR is a gear file or the name of a gear of the package. The command prints twine area, weights
+    in water, the drag by empirical formulas, derived values, and findings. It exits with 3 if there
+    are findings.
     """
     from trawl_ros.api.gear_check import check_gear, drag_of_model, draw_gear
     from trawl_ros.gear.drag_bands import BANDS, KNOT
@@ -110,7 +110,7 @@ def check(gear: str, out: Path | None) -> None:
     for picture in draw_gear(found, out) if out is not None else ():
         click.echo(picture)
     if found.findings:
-        raise SystemExit(WRONG)
+        raise SystemExit(EXIT_FINDINGS)
 
 
 @command.command('state')
@@ -118,11 +118,11 @@ def check(gear: str, out: Path | None) -> None:
 @click.option('--warp', required=True, type=WARP, help='Warp length, m.')
 @click.option('--speed', required=True, type=SPEED, help='Speed through the water, m/s.')
 def state(gear: str, warp: float, speed: float) -> None:
-    """Print the steady state of GEAR, or why there is none and what would help.
+    """Print the steady state of GEAR, or the reason why there is none and what would help.
 
-    Where the tow is refused, it is said why, from which speed the gear is towed on this warp, and
-    which changes of weights, floats, bridles, fastening points, warp or boards make it usable:
-    each was solved. Ends with code 1.
+    If there is no usable state, the command prints the reason, the speed from which the gear can be
+    towed on this warp, and changes of weights, floats, bridles, fastening points, warp or boards
+    that make it usable. Each change was solved. The exit code is then 1.
     """
     from trawl_ros.core.errors import NoSteadyState
     from trawl_ros.gear.load import load_gear
@@ -158,11 +158,11 @@ def state(gear: str, warp: float, speed: float) -> None:
 @command.command('import')
 @click.argument('plan', type=FILE)
 def import_plan(plan: Path) -> None:
-    """Turn a net plan from a table into the section of a gear file, on the standard output.
+    """Convert a net plan from a table to the section of a gear file, and print it.
 
-    PLAN is a CSV file whose columns are the keys of a piece: part, panel, section, mesh_mm,
-    front_meshes, back_meshes, long_meshes, rtex or twine_diameter_mm, material, knots, twines,
-    pieces, cut. Cells may be empty where a key may be missing.
+    PLAN is a CSV file with one row per piece. Its columns are the keys of a piece: part, panel,
+    section, mesh_mm, front_meshes, back_meshes, long_meshes, rtex or twine_diameter_mm, material,
+    knots, twines, pieces, cut. Cells of optional keys may be empty.
     """
     from trawl_ros.gear.plan_table import plan_text, read_plan
 

@@ -26,26 +26,26 @@ from trawl_ros.estimation.report.table import (
     opening_line,
 )
 
-TABLE_WIDTH = 100
+TABLE_COLUMNS = 100
 
 
 @click.command('identify')
 @click.argument('bags', nargs=-1, required=True, type=BAG)
-@click.option('--out', required=True, type=FOLDER, help='Folder for page, JSON and figures.')
+@click.option('--out', required=True, type=FOLDER, help='Folder for report, JSON and figures.')
 @GEAR_OPTION
 @click.option(
-    '--truth', type=SCENARIO, help='Scenario that made the bags; its coefficients are set beside '
-    'the estimates.',
+    '--truth', type=SCENARIO, help='Scenario that made the bags; its coefficients are compared '
+    'with the estimates.',
 )  # fmt: skip
-@click.option('--no-prior', is_flag=True, help='Let the data alone decide, within the bounds.')
+@click.option('--no-prior', is_flag=True, help='Fit without the prior, within the bounds.')
 @click.option(
-    '--net', is_flag=True, help='Estimate drag and weight of the net along; else they are held as '
-    'the gear file has them.',
+    '--net', is_flag=True, help='Also estimate drag and weight of the net; otherwise those of the '
+    'gear file are kept.',
 )  # fmt: skip
 @click.option(
-    '--motion/--steady', default=True, show_default=True, help='Learn from all of the tow, hauling '
-    'and veering included, and show it beside what its steady windows tell: minutes of work for '
-    'each hour of tow. Else from the windows alone, which takes seconds.',
+    '--motion/--steady', default=True, show_default=True, help='Fit the whole tow, including '
+    'hauling and veering, and compare it with the fit of steady windows, which takes minutes per '
+    'hour of tow. With --steady, fit only the windows, which takes seconds.',
 )  # fmt: skip
 @NAMESPACE_OPTION
 @SCHEDULER_OPTION
@@ -62,11 +62,12 @@ def command(
     scheduler: str | None,
     force: bool,
 ) -> None:
-    """Refit the twelve board coefficients from BAGS, each of them a tow.
+    """Refit the twelve board coefficients from BAGS, one bag per tow.
 
-    Writes report.html, identification.json and figures. Each tow is left out in turn and
-    predicted from the others; with a single one, its steady states are. Who stops it while it
-    learns from the motion finds the results of the windows in the folder.
+    The command writes report.html, identification.json and figures. For cross-validation each tow
+    is left out in turn and predicted from the others; with a single tow, its steady states are left
+    out. If you stop the command during the fit of the motion, the results of the steady windows
+    remain in the folder.
     """
     console = error_console()
     with ProgressDisplay(console) as display:
@@ -90,7 +91,7 @@ def command(
 def print_report(report: Report) -> None:
     """Print the verdict, tables and closing sentences."""
     console = Console(highlight=False, soft_wrap=True)
-    width = None if console.is_terminal else TABLE_WIDTH
+    width = None if console.is_terminal else TABLE_COLUMNS
     console.print(opening_line(report), style='bold')
     if not report.paired:
         console.print(coefficient_table(report), width=width)

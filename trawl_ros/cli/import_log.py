@@ -14,19 +14,20 @@ from trawl_ros.cli.options import BAG
     '--mapping',
     required=True,
     type=click.Path(path_type=Path),
-    help='YAML file that says what is what, or a name: door_test_haul_log, nmea, tv80.',
+    help='YAML file that assigns columns or sentences to topics, or a name: door_test_haul_log, '
+    'nmea, tv80.',
 )
-@click.option('--out', required=True, type=BAG, help='Folder of the bag; must not exist yet.')
+@click.option('--out', required=True, type=BAG, help='New folder for the bag.')
 @click.option(
     '--leave-out',
     is_flag=True,
-    help='Leave out rows that cannot be understood, and count them; else the first is an error.',
+    help='Leave out and count rows that cannot be read; otherwise the first one is an error.',
 )
 def command(log: Path, mapping: Path, out: Path, leave_out: bool) -> None:
-    """Turn a log from sea into a bag that replays like any other.
+    """Convert a log from sea to a bag.
 
-    LOG is a table (CSV and its relatives) or a file of NMEA 0183 sentences; the mapping says
-    which, and which column or sentence becomes which topic.
+    LOG is a table, such as CSV, or a file of NMEA 0183 sentences. The mapping determines the kind
+    and assigns columns or sentences to topics.
     """
     done = import_log(log, mapping, out, leave_out=leave_out)
     rows = 'lines' if done.of_sentences else 'rows'

@@ -1,4 +1,4 @@
-"""Handling of Ctrl-C: deferred to the next safe moment."""
+"""Handling of Ctrl-C, deferred to the next safe moment."""
 
 import signal
 import threading
@@ -7,13 +7,13 @@ from types import FrameType, TracebackType
 from typing import Any
 
 INTERRUPTED = 130
-"""Exit code of what was interrupted, by custom of shells."""
+"""Exit code of an interrupted command, as in shells: 128 + SIGINT."""
 
 
 class Interruption:
-    """Deferred interruption: the first SIGINT or SIGTERM is noted, and only a second one raises.
+    """Deferred interruption: the first SIGINT or SIGTERM sets a flag, and a second one raises.
 
-    So what is being written comes to an end between two messages, not within one.
+    The writer can so stop between two messages, not within one.
     """
 
     def __init__(self) -> None:
@@ -43,15 +43,15 @@ class Interruption:
 class Uninterrupted:
     """Blocked interruption: SIGINT and SIGTERM wait until the context is left.
 
-    Python breaks in between any two instructions, also between the start of a process and the
-    note that it was started. Handlers do this, not the mask of signals, since a child inherits
-    the mask and would not hear of its end. Only the main thread is ever interrupted, so in
-    another one this does nothing.
+    Python can interrupt between any two instructions, for example between the start of a process
+    and the record that it was started. Handlers are used instead of a signal mask, because a child
+    would inherit the mask and not react to signals. Only the main thread is ever interrupted, so in
+    other threads this does nothing.
 
     Parameters
     ----------
     noted
-        Called when a signal has come; it must not raise.
+        Function that is called at a signal; it must not raise.
     """
 
     def __init__(self, noted: Callable[[], None] = lambda: None) -> None:

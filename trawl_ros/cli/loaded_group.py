@@ -13,10 +13,10 @@ class LoadedGroup(click.Group):
     Parameters
     ----------
     modules
-        Name → module of `trawl_ros` (its ``command``), and the sentence in the list of commands,
-        which so needs none of the modules; in the order of the list.
+        For each name, the module of `trawl_ros` with its ``command`` and the sentence in the list
+        of commands, in the order of the list. The list is printed without importing the modules.
     options
-        As of `click.Group`.
+        Options of `click.Group`.
     """
 
     def __init__(self, modules: Mapping[str, tuple[str, str]], **options: Any) -> None:

@@ -1,4 +1,4 @@
-"""Types of arguments, and options that several commands have."""
+"""Types of arguments, and options that several commands share."""
 
 import math
 from pathlib import Path
@@ -16,7 +16,7 @@ FOLDER = click.Path(path_type=Path, file_okay=False)
 
 
 class Number(click.FloatRange):
-    """Number in a range; NaN, which no comparison finds outside of it, is refused."""
+    """Number in a range; NaN is refused, which comparisons do not exclude."""
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -32,16 +32,16 @@ WARP = Number(*LIMITS.warp_m)
 SPEED = Number(*LIMITS.speed_m_s)
 
 GEAR_OPTION = click.option(
-    '--gear', default='kaifuha', show_default=True, help='The gear as the model has it: a file or '
-    'the name of one that comes with the package.',
+    '--gear', default='kaifuha', show_default=True, help='Gear file of the model, or name of a '
+    'gear of the package.',
 )  # fmt: skip
 NAMESPACE_OPTION = click.option(
-    '--namespace', default=NAMESPACE, show_default=True, help="Where the project's topics live."
+    '--namespace', default=NAMESPACE, show_default=True, help="Namespace of the project's topics."
 )
 SCHEDULER_OPTION = click.option(
-    '--scheduler', help='Address of a Dask cluster that shares the work, which must see all files '
-    'under the same paths; without it, processes of this machine do. It runs code and must be '
-    "trusted; tls:// takes the keys of Dask's configuration.",
+    '--scheduler', help='Address of a Dask cluster for the work. It must see all files under the '
+    'same paths, and it runs code, so it must be trusted; tls:// uses the keys of Dask. '
+    'By default, processes of this machine do the work.',
 )  # fmt: skip
 FORCE_OPTION = click.option(
     '--force', is_flag=True, help='Replace the results of an earlier run in --out.'

@@ -12,12 +12,12 @@ from trawl_ros.cli.tables import output_console, plain_table
 if TYPE_CHECKING:
     from trawl_ros.estimation.planning.plan import TrialPlan
 
-MOST_NUMBERS = 20
-"""Each length at each speed takes seconds to look up."""
+MAX_VALUES_OF_A_LIST = 20
+"""Each pair of length and speed takes seconds to solve."""
 
 
 class _Numbers(click.ParamType[tuple[float, ...]]):
-    """Different numbers between two limits, given with commas, put in order."""
+    """Sorted distinct numbers between two limits, separated by commas."""
 
     name = 'numbers'
 
@@ -31,8 +31,9 @@ class _Numbers(click.ParamType[tuple[float, ...]]):
         if isinstance(value, tuple):
             return value
         numbers = {float(self._one.convert(text.strip(), param, ctx)) for text in value.split(',')}
-        if len(numbers) > MOST_NUMBERS:
-            self.fail(f'{len(numbers)} numbers, expected at most {MOST_NUMBERS}', param, ctx)
+        if len(numbers) > MAX_VALUES_OF_A_LIST:
+            told = f'found {len(numbers)} numbers, expected at most {MAX_VALUES_OF_A_LIST}'
+            self.fail(told, param, ctx)
         return tuple(sorted(numbers))
 
 
@@ -43,30 +44,30 @@ class _Numbers(click.ParamType[tuple[float, ...]]):
     default=6.0,
     show_default=True,
     type=Number(0.0, 48.0, min_open=True),
-    help='Time at sea.',
+    help='Time at sea, h.',
 )
 @click.option('--out', type=FOLDER, help='Folder for plan.json, trial.yaml and plan.png.')
 @click.option(
     '--lengths-m',
     type=_Numbers(20.0, 3000.0),
     metavar='L,L,…',
-    help='Warp lengths among which to choose.  [default: as in the paper, 200 to 900]',
+    help='Warp lengths to choose from, m.  [default: as in the paper, 200 to 900]',
 )
 @click.option(
     '--speeds-m-s',
     type=_Numbers(0.5, 4.0),
     metavar='U,U,…',
-    help='Speeds among which to choose.  [default: 1.9 to 2.5]',
+    help='Speeds to choose from, m/s.  [default: 1.9 to 2.5]',
 )
 @click.option(
     '--max-tension-kn',
     type=Number(0.0, 2000.0, min_open=True),
-    help='What a warp may be pulled with.',
+    help='Largest allowed tension of a warp, kN.',
 )
 @click.option(
     '--seabed-m',
     type=Number(10.0, 11_000.0),
-    help='Depth of the water; the gear stays 10 m above the bottom.',
+    help='Depth of the water, m; the gear stays 10 m above the seabed.',
 )
 @FORCE_OPTION
 def command(
@@ -79,11 +80,11 @@ def command(
     seabed_m: float | None,
     force: bool,
 ) -> None:
-    """Plan a trial that tells most about the boards of GEAR in a given time at sea.
+    """Plan a sea trial that determines the boards of GEAR best in a given time.
 
-    GEAR is a gear file or the name of one that comes with the package. Says what will be known
-    after it and what will not, beside the paper's sweep of warp lengths at one speed. With --out
-    it writes the plan, a scenario that ``trawl tow`` can run, and a picture.
+    GEAR is a gear file or the name of a gear of the package. The command prints the expected
+    accuracy, compared with the paper's sweep of warp lengths at one speed. With --out it writes the
+    plan, a scenario for ``trawl tow``, and a picture.
     """
     from trawl_ros.api import trials
     from trawl_ros.estimation.planning.states import Limits
@@ -100,11 +101,11 @@ def command(
         )
     print_plan(plan)
     if out is not None:
-        click.echo(f'\nWritten to {out}; to tow it: trawl tow {out}/trial.yaml --out BAG')
+        click.echo(f'\nWritten to {out}. To tow it: trawl tow {out}/trial.yaml --out BAG')
 
 
 def print_plan(plan: 'TrialPlan') -> None:
-    """Print legs, what is known after them, and what limits the rest."""
+    """Print the legs, the accuracy after them, and what limits the rest."""
     from trawl_ros.estimation.fit.laws import LAWS, QUANTITIES
 
     console = output_console()
@@ -136,8 +137,8 @@ def print_plan(plan: 'TrialPlan') -> None:
         )  # fmt: skip
     for title, kind in (
         ('well known (below 20 %)', 'known'),
-        ('… by the data alone', 'by_data'),
-        ('… if the board is as the file has it', 'as_filed'),
+        ('… from the data only', 'by_data'),
+        ('… if the board is that of the gear file', 'as_filed'),
     ):
         numbers = [getattr(trial, kind).well_known.sum() for trial in trials]
         known.add_row(title, '', '', *(f'{number} of {len(QUANTITIES)}' for number in numbers))
@@ -145,7 +146,7 @@ def print_plan(plan: 'TrialPlan') -> None:
     sweep = plan.sweeps[0]
     if sweep.legs:
         console.print(
-            f'\nStandard deviations are parts of what each law spans over 15°. The sweep takes '
+            f'\nStandard deviations are relative to the span of each law over 15°. The sweep takes '
             f'{len(sweep.legs)} states at {sweep.legs[0].manoeuvre.speed:g} m/s in '
             f'{sweep.minutes / 60.0:.2f} h.',
             soft_wrap=True,
@@ -154,7 +155,7 @@ def print_plan(plan: 'TrialPlan') -> None:
     if reasons:
         console.print(
             f'{len(plan.choice.refused)} of '
-            f'{len(plan.choice.refused) + len(plan.choice.candidates)} manoeuvres are not to be '
-            f'had: {reasons}.',
+            f'{len(plan.choice.refused) + len(plan.choice.candidates)} manoeuvres are not '
+            f'possible: {reasons}.',
             soft_wrap=True,
         )

@@ -13,7 +13,7 @@ from trawl_ros.plots.album import plot
 
 
 class _Time(click.ParamType[float]):
-    """``90``, ``1:30`` or ``0:01:30`` after the start, as seconds."""
+    """Time after the start, ``90``, ``1:30`` or ``0:01:30``, as seconds."""
 
     name = 'time'
 
@@ -30,14 +30,14 @@ class _Time(click.ParamType[float]):
 @click.argument('bag', type=BAG)
 @click.option('--out', required=True, type=FOLDER, help='Folder for the pictures.')
 @click.option(
-    '--at', 'times', multiple=True, type=_Time(), metavar='TIME', help='When to draw the gear and '
-    "the sonar's picture, after the start of the bag: 90, 1:30 or 1:02:30. May be given again; "
-    'by default early, in the middle and late.',
+    '--at', 'times', multiple=True, type=_Time(), metavar='TIME', help='Time after the start of '
+    'the bag to draw the gear and the sonar image: 90, 1:30 or 1:02:30. May be given several '
+    'times. By default early, in the middle and late.',
 )  # fmt: skip
-@click.option('--animate', is_flag=True, help='Make a short film as well.')
+@click.option('--animate', is_flag=True, help='Also write a short animation.')
 @click.option(
-    '--gear', default='kaifuha', show_default=True, help='The gear: a file or the name of one that '
-    'comes with the package. Its water turns pressure into depth.',
+    '--gear', default='kaifuha', show_default=True, help='Gear file or name of a gear of the '
+    'package. Its water converts pressure to depth.',
 )  # fmt: skip
 @NAMESPACE_OPTION
 @FORCE_OPTION
@@ -50,9 +50,9 @@ def command(
     namespace: str,
     force: bool,
 ) -> None:
-    """Draw the tow in BAG: the gear, what was true and measured, the sonar, the ship's track.
+    """Draw the tow of BAG: gear, true and measured quantities, sonar and the ship's track.
 
-    Leaves pictures and a page with all of them in a folder.
+    The command writes pictures, and a page with all of them, to a folder.
     """
     with ProgressDisplay(error_console()) as display, Interruption() as interruption:
         drawn = plot(
@@ -70,6 +70,6 @@ def command(
         click.echo(f'{out / picture.file}: {picture.caption}')
     for note in drawn.notes:
         click.echo(note)
-    click.echo(f'{drawn.page}: all of them on a page')
+    click.echo(f'{drawn.page}: page with all pictures')
     if not drawn.complete:
         raise SystemExit(INTERRUPTED)

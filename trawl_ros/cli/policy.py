@@ -11,13 +11,13 @@ from trawl_ros.core.files import made_folder, new_folder
 from trawl_ros.records.permissions import security_files
 from trawl_ros.records.topics import NAMESPACE
 
-NAME = re.compile(r'[A-Za-z_]\w*(/[A-Za-z_]\w*)*', re.ASCII)
-MOST_DOMAIN = 232
-"""Highest ``ROS_DOMAIN_ID`` that has ports."""
+NAMESPACE_PATTERN = re.compile(r'[A-Za-z_]\w*(/[A-Za-z_]\w*)*', re.ASCII)
+MAX_DOMAIN_ID = 232
+"""Highest ``ROS_DOMAIN_ID`` with valid ports."""
 
 
 def _namespace(ctx: click.Context, param: click.Parameter, value: str) -> str:
-    if not NAME.fullmatch(value.strip('/')):
+    if not NAMESPACE_PATTERN.fullmatch(value.strip('/')):
         raise click.BadParameter(
             f'found {value!r}, expected a namespace of ROS such as {NAMESPACE}'
         )
@@ -26,20 +26,24 @@ def _namespace(ctx: click.Context, param: click.Parameter, value: str) -> str:
 
 @click.command('policy')
 @click.option(
-    '--namespace', default=NAMESPACE, show_default=True, callback=_namespace, help='Of the nodes.'
+    '--namespace',
+    default=NAMESPACE,
+    show_default=True,
+    callback=_namespace,
+    help='Namespace of the nodes.',
 )
 @click.option(
-    '--domain', default=0, show_default=True, type=click.IntRange(0, MOST_DOMAIN),
-    help='ROS_DOMAIN_ID of the graph, which governance and permissions name.',
+    '--domain', default=0, show_default=True, type=click.IntRange(0, MAX_DOMAIN_ID),
+    help='ROS_DOMAIN_ID of the graph, written to governance and permissions.',
 )  # fmt: skip
 @click.option(
     '--out', type=FOLDER, help='New folder for policy, governance and the permissions of each node.'
 )
 def command(namespace: str, domain: int, out: Path | None) -> None:
-    """Print which topics and services each node may use, as a policy of SROS 2.
+    """Print the topics and services that each node may use, as an SROS 2 policy.
 
-    Each node has an enclave named as it is, /trawl/winch_node for instance, with the rights that it
-    uses and no more. Only controllers and the enclaves `operator` and `set_points` may command.
+    Each node has an enclave of the same name, such as /trawl/winch_node, with only the rights that
+    it needs. Only controllers and the enclaves `operator` and `set_points` may send commands.
     """
     files = security_files(namespace, domain)
     if out is None:

@@ -1,4 +1,4 @@
-"""Progress along simulated or recorded time, on a terminal and in a log."""
+"""Progress of a command, on a terminal and in a log."""
 
 import time
 
@@ -8,24 +8,24 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemaining
 from trawl_ros.core.progress import WorkProgress
 
 LINE_EVERY_S = 10.0
-"""Without a terminal a line this often (s) says how far things are."""
+"""Interval of progress lines without a terminal, s."""
 
 FIRST_RATE_S = 1.0
-"""A rate of less time than this says nothing."""
+"""Elapsed time from which a rate is meaningful, s."""
 
 
 def error_console() -> Console:
-    """Console of progress and warnings, on stderr: stdout has results alone."""
+    """Return the console for progress and warnings, on stderr: stdout holds only results."""
     return Console(stderr=True, soft_wrap=True, highlight=False)
 
 
 class ProgressDisplay:
-    """Display of the progress of a library call: bars on a terminal, else a line now and then.
+    """Display of the progress of a library call: bars on a terminal, lines elsewhere.
 
     Parameters
     ----------
     console
-        Of the display.
+        Console to write to.
     """
 
     def __init__(self, console: Console) -> None:
@@ -45,7 +45,7 @@ class ProgressDisplay:
             )
 
     def __call__(self, progress: WorkProgress) -> None:
-        """Show a moment of the work."""
+        """Show the progress."""
         stage = progress.stage
         began = self._began.setdefault(stage, time.monotonic())
         words = _words(progress, time.monotonic() - began)
@@ -70,7 +70,7 @@ class ProgressDisplay:
 
 
 def _words(progress: WorkProgress, elapsed_s: float) -> str:
-    """Say how far a stage is; simulated time in minutes, and as a multiple of real time."""
+    """Describe the progress of a stage; simulated time in minutes and relative to real time."""
     done, total, unit = progress.done, progress.total, progress.unit
     if unit == 's':
         of = '' if total is None else f' of {total / 60:.1f}'

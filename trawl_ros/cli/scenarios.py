@@ -11,12 +11,12 @@ from trawl_ros.core.resources import share_path
 from trawl_ros.core.schema import load_yaml, validated
 from trawl_ros.scenario.records import ScenarioRecord
 
-WIDTH = 140
+TABLE_COLUMNS = 140
 
 
 @click.command('scenarios')
 def command() -> None:
-    """List the scenarios that come with the package, each with what it is for."""
+    """List the scenarios of the package with their purpose."""
     table = Table(box=None, pad_edge=False)
     for heading in ('name', 'minutes', 'description'):
         side: Literal['left', 'right'] = 'right' if heading == 'minutes' else 'left'
@@ -25,5 +25,5 @@ def command() -> None:
         record = validated(ScenarioRecord, load_yaml(path, ScenarioError), path, ScenarioError)
         minutes = sum(step.minutes for step in record.steps)
         table.add_row(path.stem, f'{minutes:g}', record.description)
-    # One line each, whatever the width of the terminal.
-    Console(width=WIDTH, highlight=False).print(table, soft_wrap=True)
+    # One line per scenario on a terminal of any width.
+    Console(width=TABLE_COLUMNS, highlight=False).print(table, soft_wrap=True)

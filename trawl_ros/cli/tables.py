@@ -1,22 +1,22 @@
-"""Tables on the standard output: as wide as they need to be where it is no terminal."""
+"""Tables on the standard output, with full width if it is not a terminal."""
 
 from rich.console import Console, JustifyMethod
 from rich.table import Table
 
-FILE_WIDTH = 240
-"""Columns of text in a file or pipe, which has no edge at which to cut words off."""
+FILE_COLUMNS = 2000
+"""Width of a file or pipe, in which no cell is cut off."""
 
 
 def output_console() -> Console:
-    """Console of results."""
+    """Return the console for results."""
     console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=FILE_WIDTH)
+    return console if console.is_terminal else Console(highlight=False, width=FILE_COLUMNS)
 
 
 def plain_table(
     *headings: str, right: tuple[str, ...] = (), wrapped: tuple[str, ...] = ()
 ) -> Table:
-    """A table without frame: numbers in columns ``right``, long texts in columns ``wrapped``."""
+    """Return a table without a frame: numbers in columns ``right``, long texts in ``wrapped``."""
     table = Table(box=None, pad_edge=False)
     for heading in headings:
         justify: JustifyMethod = 'right' if heading in right else 'left'
@@ -25,5 +25,5 @@ def plain_table(
 
 
 def figure(value: float | None) -> str:
-    """Format a figure with the digits that one reads, or a dash for none."""
+    """Format a figure with four digits, or a dash for None."""
     return '–' if value is None else f'{value:.4g}'

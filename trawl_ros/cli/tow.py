@@ -1,4 +1,4 @@
-"""``trawl tow``: a bag in one process, without DDS."""
+"""``trawl tow``: make a bag in one process, without DDS."""
 
 import time
 from pathlib import Path
@@ -15,9 +15,9 @@ from trawl_ros.cli.progress import ProgressDisplay, error_console
 
 @click.command('tow')
 @click.argument('scenario', type=SCENARIO)
-@click.option('--out', required=True, type=BAG, help='Folder of the bag; must not exist yet.')
+@click.option('--out', required=True, type=BAG, help='New folder for the bag.')
 def command(scenario: Path, out: Path) -> None:
-    """Tow SCENARIO and record it as a bag: the same bytes whenever the seed is the same."""
+    """Tow SCENARIO and record it as a bag. The same seed gives the same bytes."""
     console = error_console()
     began = time.monotonic()
     with ProgressDisplay(console) as display, Interruption() as interruption:
@@ -26,7 +26,7 @@ def command(scenario: Path, out: Path) -> None:
     if not bag.complete:
         console.print(
             f'Interrupted after {bag.duration_s / 60:.1f} of {bag.planned_s / 60:.1f} min: '
-            f'{out} can be read as far as that.'
+            f'{out} can be read up to this time.'
         )
         raise SystemExit(INTERRUPTED)
 

@@ -10,18 +10,12 @@ from click.core import ParameterSource
 
 from trawl_ros.cli.options import FILE, SPEED, WARP, Number
 from trawl_ros.cli.progress import ProgressDisplay, error_console
-from trawl_ros.cli.trim_lines import (
-    closing_line,
-    points_lines,
-    range_lines,
-    state_line,
-    wish_lines,
-)
 from trawl_ros.core.arrays import FloatArray
 
 if TYPE_CHECKING:
     from trawl_ros.gear.records import GearRecord
     from trawl_ros.model.gear_model import GearModel
+    from trawl_ros.records.observables import Observables
     from trawl_ros.solver.advising.rig_changes import RigChange
     from trawl_ros.solver.equilibrium import SteadyState
     from trawl_ros.solver.trimming.measured import MeasuredAngles
@@ -31,10 +25,10 @@ if TYPE_CHECKING:
 KINDS = 'bridles', 'weights', 'floats', 'clump', 'boards'
 """Kinds of changes, those of `trawl_ros.solver.advising.rig_changes`, which is slow to load."""
 
-METRES = Number(1.0, 2000.0)
+SPREAD_OR_DEPTH = Number(1.0, 2000.0)
 
-MISSED = 0.05
-"""Part of a wanted spread or depth by which the trimmed gear may miss it."""
+MAX_RELATIVE_MISS = 0.05
+"""Largest relative difference of the trimmed gear from a wanted spread or depth."""
 
 
 def _kinds(
@@ -43,7 +37,7 @@ def _kinds(
     kinds = tuple(kind.strip() for kind in (value or '').split(',') if kind.strip())
     for kind in kinds:
         if kind not in KINDS:
-            raise click.BadParameter(f"found '{kind}', expected of {', '.join(KINDS)}")
+            raise click.BadParameter(f"found '{kind}', expected one of {', '.join(KINDS)}")
     return kinds
 
 
@@ -62,36 +56,36 @@ def _kinds(
     type=Number(-30.0, 30.0),
     help='Wanted pitch, nose down, deg.',
 )
-@click.option('--spread', type=METRES, help='Door spread, m, from which angles are found.')
-@click.option('--depth', type=METRES, help='Door depth, m, from which angles are found.')
+@click.option('--spread', type=SPREAD_OR_DEPTH, help='Door spread that determines the angles, m.')
+@click.option('--depth', type=SPREAD_OR_DEPTH, help='Door depth that determines the angles, m.')
 @click.option(
     '--tension-kn',
     type=Number(0.1, 2000.0),
-    help='Tension of a warp measured with them, kN; the model is held against it.',
+    help='Tension of a warp measured with --spread and --depth, kN; compared with the model.',
 )
 @click.option(
     '--warp',
     default=500.0,
     show_default=True,
     type=WARP,
-    help='Warp length at which the angles are wanted or were measured, m.',
+    help='Warp length of the wanted angles or of the measurement, m.',
 )
 @click.option(
     '--speed',
     default=2.1,
     show_default=True,
     type=SPEED,
-    help='Speed through the water at which they are, m/s.',
+    help='Speed through the water for the same, m/s.',
 )
 @click.option('--warps', nargs=2, type=WARP, help='Shortest and longest warp of a range, m.')
 @click.option('--speeds', nargs=2, type=SPEED, help='Lowest and highest speed of a range, m/s.')
 @click.option(
     '--free',
     callback=_kinds,
-    help=f'What may be changed where fastening points do not meet the wish: {", ".join(KINDS)}; '
-    'several with commas.',
+    help='Changes that are allowed if fastening points are not enough, separated by commas: '
+    f'{", ".join(KINDS)}.',
 )
-@click.option('--out', type=FILE, help='New file for a copy of GEAR with what was found.')
+@click.option('--out', type=FILE, help='New file for a copy of GEAR with the result.')
 @click.pass_context
 def command(
     context: click.Context,
@@ -109,16 +103,16 @@ def command(
     free: tuple[str, ...],
     out: Path | None,
 ) -> None:
-    """Find fastening points that give the boards of GEAR wanted angles.
+    """Find fastening points that give the boards of GEAR the wanted angles.
 
-    GEAR is a gear file or the name of one that comes with the package. The search starts from
-    the file's own points and changes them as little as it can. The result is printed as the
-    file has it; nothing is written but for --out.
+    GEAR is a gear file or the name of a gear of the package. The search starts from the points of
+    the file and changes them as little as possible. The result is printed in the format of a gear
+    file; only --out writes a file.
 
-    In place of angles it takes the --spread and --depth of the doors as measured at --warp and
-    --speed, and says which angles come nearest. With --warps or --speeds all coordinates are used
-    so that the angles change little over the range. With --free the rigging is changed too, where
-    the wish is not met or not all of the range is usable.
+    Instead of angles you can give --spread and --depth of the doors, measured at --warp and
+    --speed. The command then finds the nearest angles. With --warps or --speeds it chooses all
+    coordinates so that the angles change little over the range. With --free it also changes the
+    rigging, if the wanted values are not reached or part of the range is not usable.
     """
     from trawl_ros.gear.edit import require_new, write_changed
     from trawl_ros.gear.load import load_gear
@@ -133,7 +127,7 @@ def command(
     elif spread is None or depth is None or attack is not None or inclination is not None:
         raise click.UsageError('expected either --attack and --inclination or --spread and --depth')
     if tension_kn is not None and angles is not None:
-        raise click.UsageError('--tension-kn: expected beside --spread and --depth')
+        raise click.UsageError('--tension-kn: expected together with --spread and --depth')
     if out is not None:
         require_new(out)
     record = load_gear(gear)
@@ -149,8 +143,8 @@ def command(
     points, usable, more, steady = _trimmed(model, changes, wish)
     if wanted is not None and steady is not None:
         reached = replace(wanted, observables=steady.observables)
-        if reached.missed_by > MISSED:
-            click.echo(f'# with these points the gear misses the wish: {reached.missed}')
+        if reached.missed_by > MAX_RELATIVE_MISS:
+            click.echo(f'# with these points the gear misses the wanted values: {reached.missed}')
             usable = False
     traded = Traded((*traded.changes, *more.changes))
     if out is not None:
@@ -161,10 +155,10 @@ def command(
 
 
 def _refuse_ignored(context: click.Context, ranges: dict[str, tuple[float, float] | None]) -> None:
-    """Refuse an option that a range takes the place of."""
+    """Refuse a single value if its range is given too."""
     for name, given in ranges.items():
         if given is not None and context.get_parameter_source(name) is not ParameterSource.DEFAULT:
-            raise click.UsageError(f'--{name}: found beside --{name}s, expected one of them')
+            raise click.UsageError(f'--{name} and --{name}s: found both, expected one of them')
 
 
 @dataclass(frozen=True)
@@ -179,7 +173,7 @@ class Wish:
 
     @property
     def angles(self) -> dict[str, float]:
-        """The angles as searches take them."""
+        """Angles as keyword arguments of a search."""
         return {'attack': self.attack, 'inclination': self.inclination, 'pitch': self.pitch}
 
     @property
@@ -189,17 +183,17 @@ class Wish:
 
 
 def _with_middle(ends: tuple[float, float]) -> list[float]:
-    """Ends of a range and their geometric mean."""
+    """Return the ends of a range and their geometric mean."""
     return sorted({ends[0], float(np.sqrt(ends[0] * ends[1])), ends[1]})
 
 
 def _trimmed(
     model: 'GearModel', changes: 'tuple[RigChange, ...]', wish: Wish
 ) -> 'tuple[FloatArray, bool, Traded, SteadyState | None]':
-    """Find points; print them.
+    """Find points and print them.
 
-    Returns the points, True if all of the range is usable, what was changed, and the steady state
-    of a range that is one place, where there is one.
+    Returns the points, True if all of the range is usable, the changes, and the steady state of a
+    range that is a single place, if there is one.
     """
     from trawl_ros.core.errors import NoSteadyState
     from trawl_ros.solver.trim import trim
@@ -211,7 +205,7 @@ def _trimmed(
         try:
             trimmed = trim(model, **wish.angles, warp_length=warps[0], speed=speeds[0])
         except NoSteadyState as reason:
-            click.echo(f'# with the nearest points: {reason}; all coordinates are free now')
+            click.echo(f'# {reason}; the search goes on with all coordinates free')
         else:
             click.echo('\n'.join(points_lines(trimmed.points)))
             click.echo(f'# {state_line(warps[0], speeds[0], trimmed.steady)}')
@@ -230,7 +224,7 @@ def _trimmed(
     if traded.changes:
         lines.append(f'with {traded.told}')
     elif changes and found.usable < len(found.found):
-        lines.append('no change of what is free makes more of the range usable')
+        lines.append('none of the allowed changes makes more of the range usable')
     lines.extend(f'at its bound: {coordinate}' for coordinate in found.at_bounds)
     for line in (*lines, closing_line(found), *_advice_lines(found)):
         click.echo(f'# {line}')
@@ -239,7 +233,7 @@ def _trimmed(
 
 
 def _advice_lines(found: 'RangeTrim') -> tuple[str, ...]:
-    """Lines of advice on the first operating point that is not usable."""
+    """Return lines of advice on the first operating point that is not usable."""
     from trawl_ros.solver.advising.advice import advice
 
     refused = next((point for point in found.found if point.steady is None), None)
@@ -283,3 +277,74 @@ def _measured(
     if traded.changes:
         click.echo(f'# with {traded.told}')
     return found, traded
+
+
+def points_lines(points: FloatArray) -> tuple[str, ...]:
+    """Return fastening points in the format of a gear file."""
+    names = 'warp_m', 'upper_bridle_m', 'lower_bridle_m'
+    return (
+        '  fastening:',
+        *(
+            f'    {name}: [{", ".join(f"{x:.3f}" for x in point)}]'
+            for name, point in zip(names, points, strict=True)
+        ),
+    )
+
+
+def state_line(warp: float, speed: float, steady: 'SteadyState') -> str:
+    """Describe a steady state at a warp length (m) and speed (m/s)."""
+    observables: Observables = steady.observables
+    # δ has no sign; the roll of the port board gives the direction of its lean.
+    inward = ' inward' if observables.port_roll < 0.0 else ''
+    return (
+        f'at {warp:g} m and {speed:g} m/s: α {np.degrees(observables.port_attack):.1f}°, '
+        f'δ {np.degrees(observables.port_inclination):.1f}°{inward}, '
+        f'β {np.degrees(observables.port_slip):.1f}°, '
+        f'spread {observables.door_spread:.1f} m, door depth {observables.door_depth:.1f} m, '
+        f'tension {observables.warp_tension / 1e3:.1f} kN; the slowest motion settles in '
+        f'{steady.stability.settling_time:.0f} s'
+    )
+
+
+def range_lines(found: 'RangeTrim') -> list[str]:
+    """Describe every operating point of a range."""
+    lines = []
+    for point in found.found:
+        if point.steady is None:
+            lines.append(
+                f'not at {point.warp_length:g} m and {point.speed:.3g} m/s: {point.reason}'
+            )
+        else:
+            lines.append(state_line(point.warp_length, round(point.speed, 3), point.steady))
+    return lines
+
+
+def wish_lines(found: 'RangeTrim', attack: float, inclination: float) -> list[str]:
+    """Compare the wanted angles with those of the usable states."""
+    seen = [point.steady.observables for point in found.found if point.steady is not None]
+    if not seen:
+        return []
+    # δ is printed without a sign, for wanted and found angles alike.
+    angles = np.degrees([[o.port_attack, o.port_inclination] for o in seen])
+    (alpha, delta), (most_alpha, most_delta) = angles.min(axis=0), angles.max(axis=0)
+    return [
+        f'wanted α {np.degrees(attack):.1f}° and δ {np.degrees(abs(inclination)):.1f}°; nearest '
+        f'over the range: α {alpha:.1f}° to {most_alpha:.1f}°, δ {delta:.1f}° to {most_delta:.1f}°'
+    ]
+
+
+def closing_line(found: 'RangeTrim') -> str:
+    """Count the usable states of a range, and describe the change of attitude over it."""
+    speeds = sorted({point.speed for point in found.found})
+    percent = 100.0 * np.log(speeds[-1] / speeds[0])
+    attack, lean = np.degrees(found.by_speed)
+    closing = f'{found.usable} of {len(found.found)} are usable'
+    if percent > 0.0 and found.usable > 1:
+        closing += (
+            f'; with speed α changes by {attack:.1f}° and δ by {lean:.1f}°, '
+            f'{attack / percent:.2f}° and {lean / percent:.2f}° per % of speed'
+        )
+    if len({point.warp_length for point in found.found}) > 1 and found.usable > 1:
+        attack, lean = np.degrees(found.by_warp)
+        closing += f'; with warp length by {attack:.1f}° and {lean:.1f}°'
+    return closing

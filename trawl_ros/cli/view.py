@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from trawl_ros.view.bags import TowBags
     from trawl_ros.view.viewer.viewer import Kind, Viewer
 
-LOOK_S = 0.2
-"""Ctrl-C is looked for this often."""
+POLL_S = 0.2
+"""Interval of checks for Ctrl-C, s."""
 
 
 @dataclass(frozen=True)
 class Choices:
-    """Arguments and options of the command, by their names."""
+    """Arguments and options of the command, by name."""
 
     bags: tuple[Path, ...]
     live: bool
@@ -43,60 +43,60 @@ class Choices:
 
     @property
     def picture(self) -> bool:
-        """True if a picture is asked for."""
+        """True if a picture is wanted."""
         return self.out is not None and self.out.suffix == '.png'
 
     def check(self) -> None:
-        """Refuse options that do not go together."""
+        """Refuse options that exclude each other."""
         if self.out is not None and self.web:
-            raise click.UsageError('--out and --web: a recording is written, or shown')
+            raise click.UsageError('--out and --web: found both, expected one of them')
         if self.live == bool(self.bags):
-            raise click.UsageError('BAG... or --live: expected one of them')
+            raise click.UsageError('BAG... and --live: found both or neither, expected one of them')
         if self.live and self.picture:
-            raise click.UsageError('--live: pictures are of bags; expected --out FILE.rrd')
+            raise click.UsageError('--live: found --out with a picture, expected FILE.rrd')
         if self.live and self.model:
-            raise click.UsageError('--live and --model: the model is drawn beside bags alone')
+            raise click.UsageError(
+                '--live and --model: found both, expected --model with bags only'
+            )
 
 
 @click.command('view')
 @click.argument('bags', metavar='BAG...', nargs=-1, type=BAG)
-@click.option('--live', is_flag=True, help='Show the running graph in place of bags.')
+@click.option('--live', is_flag=True, help='Show the running graph instead of bags.')
 @click.option(
-    '--out', type=FILE, help='Write a recording (.rrd) for Rerun, or a picture (.png) of what it '
-    'shows halfway, and open no viewer.',
+    '--out', type=FILE, help='Write a Rerun recording (.rrd), or a picture (.png) of the middle of '
+    'the tow, instead of opening a viewer.',
 )  # fmt: skip
-@click.option('--web', is_flag=True, help='Show it on a web page of this machine.')
+@click.option('--web', is_flag=True, help='Show the tow on a web page of this machine.')
 @click.option(
     '--bind', default=THIS_MACHINE, show_default=True, metavar='ADDRESS',
-    help='Address on which the viewer listens. Whoever reaches another one than that of this '
-    'machine sees the tow and can add to it.',
+    help='Address on which the viewer listens. With another address than that of this machine, '
+    'others can see the tow and add data to it.',
 )  # fmt: skip
 @click.option(
-    '--port', type=click.IntRange(1024, 65534), help='Of the web page, whose data are at the next '
-    'one; by default free ones.',
+    '--port', type=click.IntRange(1024, 65534), help='Port of the web page; its data use the next '
+    'one. By default free ports.',
 )  # fmt: skip
 @click.option(
     '--memory', type=click.IntRange(100, 1_000_000), default=2000, show_default=True, metavar='MB',
-    help='Of the viewer; beyond it the oldest data are given up.',
+    help='Memory of the viewer; above it the oldest data are dropped.',
 )  # fmt: skip
 @click.option(
-    '--gear', default='kaifuha', show_default=True, help='The gear: a file or the name of one that '
-    'comes with the package. Its water turns pressure into depth, and its sizes draw the gear '
-    'where the bag does not.',
+    '--gear', default='kaifuha', show_default=True, help='Gear file or name of a gear of the '
+    'package. Its water converts pressure to depth, and its sizes are drawn if the bag has none.',
 )  # fmt: skip
 @click.option(
-    '--model', is_flag=True, help='Draw beside the readings what this gear shows when it is towed '
-    'steadily, in each steady window. A steady state takes up to some seconds.',
+    '--model', is_flag=True, help='Also draw the steady state of this gear in each steady window. '
+    'A steady state takes up to a few seconds.',
 )  # fmt: skip
 @NAMESPACE_OPTION
 @click.option('--force', is_flag=True, help='Replace the file of --out.')
 def command(**given: Any) -> None:
-    """Show the tow in BAG..., or of the running graph, in Rerun.
+    """Show the tow of BAG..., or of the running graph, in Rerun.
 
-    Shown are gear, sonar, track, histories, estimates and findings. Several bags are parts of one
-    tow, or a tow and what was estimated from it; their stamps put them on one time line. Opens the
-    viewer's window, which ends with the command, and the command with it. With --live, `view_node`
-    listens to the graph until Ctrl-C.
+    It shows gear, sonar, track, time series, estimates and findings. Several bags are parts of one
+    tow, or a tow and its estimates; their stamps put them on one time line. The command opens the
+    viewer's window and ends with it. With --live, `view_node` listens to the graph until Ctrl-C.
     """
     asked = Choices(**given)
     asked.check()
@@ -110,7 +110,7 @@ def command(**given: Any) -> None:
         return
     complete = _record_or_open(tow, asked)
     if asked.out is not None:
-        click.echo(f'{asked.out}: {", ".join(map(str, asked.bags))}, for Rerun')
+        click.echo(f'{asked.out}: recording of {", ".join(map(str, asked.bags))} for Rerun')
         if not complete:
             raise SystemExit(INTERRUPTED)
 
@@ -126,11 +126,11 @@ def _draw(tow: 'TowBags', out: Path, asked: Choices) -> None:
         write_picture(tow, gear, out, model=asked.model, on_progress=display)
     for problem in tow.problems:
         click.echo(problem, err=True)
-    click.echo(f'{out}: {", ".join(map(str, tow.paths))}, as Rerun shows it')
+    click.echo(f'{out}: Rerun picture of {", ".join(map(str, tow.paths))}')
 
 
 def _record_or_open(tow: 'TowBags', asked: Choices) -> bool:
-    """Write the recording, or show it until its viewer is closed; True if it is whole."""
+    """Write the recording, or show it until its viewer is closed; return True if complete."""
     from trawl_ros.view.recording import to_file, to_viewer
     from trawl_ros.view.viewer.viewer import Viewer
 
@@ -150,7 +150,7 @@ def _record_or_open(tow: 'TowBags', asked: Choices) -> bool:
         for problem in tow.problems:
             click.echo(problem, err=True)
         while viewer is not None and viewer.running and not interruption.requested:
-            viewer.wait(LOOK_S)
+            viewer.wait(POLL_S)
         if viewer is not None:
             viewer.check()
     return complete
@@ -175,7 +175,7 @@ def _show(
 
 
 def _run_node(asked: Choices) -> NoReturn:
-    """Become `view_node`, which knows ROS as commands do not; Ctrl-C then is for the node."""
+    """Replace this process by `view_node`, which uses ROS and receives Ctrl-C."""
     if find_spec('rclpy') is None:
         raise RosMissing('trawl view --live', ModuleNotFoundError(name='rclpy'))
     parameters = {
@@ -186,7 +186,7 @@ def _run_node(asked: Choices) -> NoReturn:
         'memory_mb': asked.memory,
         'gear': asked.gear,
     }
-    # JSON is YAML, so strings stay strings whatever is in them.
+    # JSON is valid YAML, so strings remain strings with any content.
     options = [
         word for key, value in parameters.items() for word in ('-p', f'{key}:={json.dumps(value)}')
     ]

@@ -5,42 +5,44 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.control.bearings import LOST_S, Bearings, NavigationSample
-from trawl_ros.control.drift import Way
-from trawl_ros.control.track import Track
+from trawl_ros.control.dead_reckoning import (
+    SENSOR_TIMEOUT_S,
+    DeadReckoning,
+    NavigationSample,
+)
+from trawl_ros.control.track import Track, Way
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.geodesy import Datum
 
-GAIN_PER_S = 0.05
-"""Rate of turn per angle that is left: 0.15 deg/s at 3 degrees."""
+HEADING_GAIN_PER_S = 0.05
+"""Rate of turn per heading error: 0.15 deg/s at 3 degrees."""
 
-BRAKING = 0.5
-"""Share of the greatest turn acceleration used to end a turn."""
+BRAKING_RATIO = 0.5
+"""Part of the turn acceleration that is used to stop a turn."""
 
-RESPONSE_S = 15.0
-"""Delay of a turn into a leg against its full rate: to begin, and to end gently."""
+TURN_DELAY_S = 15.0
+"""Delay of a turn compared with one at the full rate: it begins and ends gently."""
 
-BEGUN_M = 100.0
-"""A ship this near to the first waypoint of a track begins with the leg from there."""
+FIRST_WAYPOINT_RADIUS_M = 100.0
+"""A ship within this distance of the first waypoint of a track begins with the leg from there."""
 
-PASSED_M = 150.0
-"""A school as near as this is not aimed at any more: the ship goes on over it."""
+SCHOOL_PASSED_M = 150.0
+"""Distance of a school below which the ship keeps its course over it."""
 
-SEEN_SHARE = 0.4
-"""Filter gain of a sweep's position: the fish sonar's bearing wavers by degrees."""
+SCHOOL_GAIN = 0.4
+"""Filter gain of a school's position: the bearing of the fish sonar scatters by degrees."""
 
 SAME_SCHOOL_M = 500.0
-"""A school seen this near to where one was aimed at is the same."""
+"""A school within this distance of the last target is the same school."""
 
 
 @dataclass(frozen=True)
 class AutopilotSettings:
     """Settings of an autopilot.
 
-    ``max_turn`` is the fastest rate of turn (rad/s), which the gear must be able to follow: in a
-    faster turn it loses speed, so that its doors lose their lift and it sinks;
-    ``turn_acceleration`` how fast the ship takes it up (rad/s²); ``look_ahead`` how far ahead on a
-    track is aimed (m).
+    ``max_turn`` is the fastest rate of turn (rad/s) that the gear can follow: in a faster turn it
+    loses speed, so its doors lose lift and it sinks. ``turn_acceleration`` (rad/s²) is that of the
+    ship, and ``look_ahead`` (m) the look-ahead distance on a track.
     """
 
     max_turn: float = math.radians(0.15)
@@ -50,28 +52,28 @@ class AutopilotSettings:
 
 @dataclass(frozen=True)
 class HoldHeading:
-    """Target: a heading by compass, ENU yaw, rad."""
+    """Target: heading by compass, ENU yaw, rad."""
 
     heading: float
 
 
 @dataclass(frozen=True)
 class HoldCourse:
-    """Target: a course over ground, whatever the current, ENU yaw, rad."""
+    """Target: course over ground in any current, ENU yaw, rad."""
 
     course: float
 
 
 @dataclass(frozen=True)
 class FollowTrack:
-    """Target: a track over ``waypoints`` (n, 2), east and north in ``map``, m."""
+    """Target: track over ``waypoints`` (n, 2), east and north in ``map``, m."""
 
     waypoints: FloatArray
 
 
 @dataclass(frozen=True)
 class ToSchool:
-    """Target: the nearest school ahead that the fish sonar sees, and straight on from there."""
+    """Target: nearest school ahead that the fish sonar detects, then straight on."""
 
 
 Target = HoldHeading | HoldCourse | FollowTrack | ToSchool
@@ -81,9 +83,9 @@ Target = HoldHeading | HoldCourse | FollowTrack | ToSchool
 class AutopilotState:
     """Report of an autopilot at one instant.
 
-    Angles in rad, ENU yaw; NaN where something is not known or not meant: ``wanted`` heading,
-    ``course`` wanted over ground, ``across`` (m to port of the leg), ``left`` (m of it);
-    ``ended`` says that the last waypoint lies astern.
+    Angles are ENU yaw, rad; NaN means unknown or not applicable. ``wanted`` is the heading,
+    ``course`` that over ground, ``across`` the distance to port of the leg and ``left`` that to its
+    end, m. ``ended`` is True after the last waypoint.
     """
 
     wanted: float = math.nan
@@ -97,25 +99,25 @@ class AutopilotState:
 
 
 class Autopilot:
-    """Autopilot: computes the rate of turn that steers the ship to its target.
+    """Autopilot: rate of turn that steers the ship to its target.
 
     Parameters
     ----------
     settings
-        Limits of the rate of turn, and the look-ahead.
+        Limits of the rate of turn, and the look-ahead distance.
     datum
-        Origin of ``map``, from which fixes are counted.
+        Origin of ``map``.
 
     Attributes
     ----------
     state : AutopilotState
-        As of the last call of `turn_rate`.
+        Report of the last call of `turn_rate`.
     """
 
     def __init__(self, settings: AutopilotSettings, datum: Datum) -> None:
         self.settings = settings
         self.state = AutopilotState()
-        self._bearings = Bearings(datum)
+        self._reckoning = DeadReckoning(datum)
         self._target: Target | None = None
         self._track: Track | None = None
         self._aim: FloatArray | None = None
@@ -133,19 +135,19 @@ class Autopilot:
         self._passed = False
 
     def take(self, sample: NavigationSample) -> None:
-        """Update the bearings by a sensor's sample."""
-        self._bearings.take(sample)
+        """Update the dead reckoning by a sample."""
+        self._reckoning.take(sample)
 
     def turn_rate(self, stamp: int) -> float:
         """Return the wanted rate of turn (rad/s, to port positive) at a stamp (ns)."""
-        heading = self._bearings.heading
-        age = self._bearings.age('heading', stamp)
-        if heading is None or age > LOST_S:
+        heading = self._reckoning.heading
+        age = self._reckoning.age('heading', stamp)
+        if heading is None or age > SENSOR_TIMEOUT_S:
             self._rate = 0.0
-            self.state = AutopilotState(problems=('heading lost: goes straight on',))
+            self.state = AutopilotState(problems=('heading lost: the ship goes straight on',))
             return 0.0
         state = self._guide(stamp, heading)
-        # Between two samples the ship turns on.
+        # The ship keeps turning between two samples.
         left = math.remainder(state.wanted - heading - self._rate * age, 2 * math.pi)
         self._rate = self._towards(left)
         self.state = replace(state, turn_rate=self._rate)
@@ -153,15 +155,18 @@ class Autopilot:
 
     def _towards(self, angle: float) -> float:
         settings = self.settings
-        braking = math.sqrt(2 * BRAKING * settings.turn_acceleration * abs(angle))
-        return math.copysign(min(settings.max_turn, GAIN_PER_S * abs(angle), braking), angle)
+        # ω² = 2 a φ: the rate from which the ship can still stop within the angle left.
+        braking = math.sqrt(2 * BRAKING_RATIO * settings.turn_acceleration * abs(angle))
+        return math.copysign(
+            min(settings.max_turn, HEADING_GAIN_PER_S * abs(angle), braking), angle
+        )
 
     def _guide(self, stamp: int, heading: float) -> AutopilotState:
         if isinstance(self._target, HoldHeading):
             return AutopilotState(wanted=self._target.heading)
         if isinstance(self._target, HoldCourse):
             return self._against_current(self._target.course, stamp)
-        position = self._bearings.position(stamp)
+        position = self._reckoning.position(stamp)
         if position is None:
             return self._without_place(stamp, heading)
         if isinstance(self._target, FollowTrack):
@@ -173,29 +178,32 @@ class Autopilot:
     def _against_current(
         self, course: float, stamp: int, problems: tuple[str, ...] = ()
     ) -> AutopilotState:
-        """State with the heading on which the ship makes good a course in the current."""
+        """Return the state with the heading on which the ship makes good a course."""
         self._course = course
         for what, name in (('ground', 'velocity over ground'), ('water', 'speed log')):
-            if self._bearings.age(what, stamp) > LOST_S:
-                problems += (f'{name} lost: the current is taken as it was',)
+            if self._reckoning.age(what, stamp) > SENSOR_TIMEOUT_S:
+                problems += (f'{name} lost: the last current is used',)
         wanted = self._way.heading_on(course)
         return AutopilotState(wanted=wanted, course=course, problems=problems)
 
     @property
     def _way(self) -> Way:
-        bearings = self._bearings
-        return Way(bearings.speed, bearings.current, self.settings.max_turn)
+        reckoning = self._reckoning
+        return Way(reckoning.speed, reckoning.current, self.settings.max_turn)
 
     def _without_place(self, stamp: int, heading: float) -> AutopilotState:
         course = heading if math.isnan(self._course) else self._course
-        return self._against_current(course, stamp, ('fix lost: holds the course',))
+        return self._against_current(course, stamp, ('fix lost: the ship holds its course',))
 
     def _along(self, waypoints: FloatArray, position: FloatArray, stamp: int) -> AutopilotState:
         if self._track is None:
-            begun = len(waypoints) > 1 and np.hypot(*(waypoints[0] - position)) < BEGUN_M
+            begun = (
+                len(waypoints) > 1
+                and np.hypot(*(waypoints[0] - position)) < FIRST_WAYPOINT_RADIUS_M
+            )
             points = waypoints if begun else np.vstack([position, waypoints])
             self._track = Track(points, look_ahead=self.settings.look_ahead)
-        guidance = self._track.follow(position, self._way, RESPONSE_S)
+        guidance = self._track.follow(position, self._way, TURN_DELAY_S)
         state = self._against_current(guidance.course, stamp, self._fix_problems(stamp))
         return replace(
             state,
@@ -209,10 +217,12 @@ class Autopilot:
         aim = self._aim_at(position, heading)
         if aim is None:
             course = heading if math.isnan(self._course) else self._course
-            return self._against_current(course, stamp, ('no school ahead: holds the course',))
+            return self._against_current(
+                course, stamp, ('no school ahead: the ship holds its course',)
+            )
         away = aim - position
         distance = float(np.hypot(*away))
-        if distance > PASSED_M and not self._passed:
+        if distance > SCHOOL_PASSED_M and not self._passed:
             self._course = math.atan2(away[1], away[0])
         else:
             self._passed = True
@@ -220,8 +230,8 @@ class Autopilot:
         return replace(state, left=distance, ended=self._passed)
 
     def _aim_at(self, position: FloatArray, heading: float) -> FloatArray | None:
-        """Place of the chosen school, or of the nearest ahead if none is chosen yet."""
-        schools = self._bearings.schools
+        """Return the position of the chosen school, or of the nearest ahead at first."""
+        schools = self._reckoning.schools
         if self._aim is None:
             away = schools - position
             ahead = away @ np.array([math.cos(heading), math.sin(heading)]) > 0.0
@@ -233,11 +243,11 @@ class Autopilot:
             nearest = schools[distances.argmin()]
             if self._aim is None:
                 self._aim = nearest
-            elif distances.min() < SAME_SCHOOL_M and self._bearings.schools is not self._seen:
-                self._aim = self._aim + SEEN_SHARE * (nearest - self._aim)
-            self._seen = self._bearings.schools
+            elif distances.min() < SAME_SCHOOL_M and self._reckoning.schools is not self._seen:
+                self._aim = self._aim + SCHOOL_GAIN * (nearest - self._aim)
+            self._seen = self._reckoning.schools
         return self._aim
 
     def _fix_problems(self, stamp: int) -> tuple[str, ...]:
-        lost = self._bearings.age('fix', stamp) > LOST_S
-        return ('fix lost: the place is reckoned',) if lost else ()
+        lost = self._reckoning.age('fix', stamp) > SENSOR_TIMEOUT_S
+        return ('fix lost: the position is dead-reckoned',) if lost else ()

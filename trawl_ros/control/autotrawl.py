@@ -2,61 +2,35 @@
 
 A wanted length is the sum of four parts, each bounded:
 
-- the *set length*, approached at the winch's speed when it is changed;
-- the *counter's part*, which brings what the counters say to the set lengths, slowly: in mode
-  ``lengths`` each winch for itself, in mode ``tension`` the mean of both;
-- the *balance*, in mode ``tension``: as much to the one side as from the other, an integral of
-  the difference in tension, for the taut warp becomes slack when it is paid out. It is slow, since
-  doors and net take a minute to come to rest again;
-- the *give*, in mode ``tension``: warp paid out at once when the tension rises above what is to
-  be held, and hauled back slowly.
+- the *set length*, approached at the speed of the winch after a change;
+- the *counter's part*, which slowly brings the counters to the set lengths: in mode ``lengths``
+  each winch on its own, in mode ``tension`` the mean of both;
+- the *balance*, in mode ``tension``: an integral of the difference in tension, paid out on one side
+  and hauled on the other, because the taut warp slackens when it is paid out. It is slow, because
+  doors and net need a minute to settle;
+- the *give*, in mode ``tension``: warp that is paid out at once when the tension rises above the
+  held one, and hauled back slowly.
 
-What cannot be computed for want of a sensor stays as it is.
+A part whose sensor is missing keeps its value.
 """
 
 import math
+from collections import deque
+from statistics import median
 
 from trawl_ros.control.autotrawl_records import (
     FAST_S,
     GIVE_LENGTH_M,
+    AutotrawlOptions,
     AutotrawlSettings,
     AutotrawlState,
 )
 from trawl_ros.control.low_pass import LowPass
-from trawl_ros.control.watch import Watch
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import WinchSample
 from trawl_ros.records.truth import SIDES
 
-LONGEST_GAP_S = 2.0
-"""Integrals grow by no more than this for one sample: what happened in a gap is not known."""
-
-BALANCE_S, MEAN_S = 10.0, 120.0
-"""Time constants of the tension that is balanced, and of the one from which a peak rises."""
-
-LOST_S = 3.0
-"""Time without a reading after which a sensor is lost."""
-
-FREEZE_M = 2.0
-"""A counter that does not change while so much is wanted of its winch is frozen."""
-
-FREEZE_CHANGES, FREEZE_TRAVEL_M = 20, 1.0
-"""A load cell that does not change is frozen when its fellow has changed so many times, or the
-wanted lengths have gone up and down by so much."""
-
-COUNTER_S, COUNTER_SPEED, COUNTER_DEAD_BAND_M = 30.0, 0.1, 0.2
-SETTLING_S, CALM_S = 10.0, 60.0
-"""Times after the set length is reached: until a winch stands still, and until the tension is no
-more that of hauling or veering, to which nothing is to be given."""
-
-COUNTER_SHARE = 0.05
-"""A counter is believed within this share of the length; its part is bounded by it."""
-
-BALANCE_SPEED = 0.05
-"""The gear takes its time to follow, however large the difference in tension."""
-
-LEAD_S = 0.3
-"""Latency of a sample and a command together."""
+OPTIONS = AutotrawlOptions()
 
 _SIGNS = (1.0, -1.0)
 
@@ -69,6 +43,87 @@ def _beyond(value: float, dead_band: float) -> float:
     return math.copysign(max(abs(value) - dead_band, 0.0), value)
 
 
+class SensorWatch:
+    """Watchdog of one channel of a sensor, which passes valid readings.
+
+    The value is the median of the last three readings, so a single outlier has no effect. A channel
+    is *lost* if it gives no number for a while. It is *frozen* if its number stays exactly the same
+    although a quantity that it must follow has changed.
+
+    Parameters
+    ----------
+    name
+        Name of the sensor in messages.
+    lost_s
+        Time without a number after which it is lost, s.
+    frozen_after
+        Change of the followed quantity after which a constant number is frozen.
+
+    Attributes
+    ----------
+    value : float
+        Valid reading; NaN while the channel has a fault.
+    problem : str
+        Description of its fault, '' without one.
+    """
+
+    def __init__(self, name: str, *, lost_s: float, frozen_after: float) -> None:
+        self.name = name
+        self.value = math.nan
+        self.problem = ''
+        self._timeout_ns = round(lost_s * SECOND)
+        self._frozen_after = frozen_after
+        self._recent: deque[float] = deque(maxlen=3)
+        self._heard: int | None = None
+        self._followed_at_change = 0.0
+        self._frozen = False
+
+    def take(self, reading: float, stamp: int, followed: float) -> bool:
+        """Update by a reading.
+
+        Parameters
+        ----------
+        reading
+            Number of the sensor; NaN if it gives none.
+        stamp
+            Time of the reading, ns.
+        followed
+            Value of the quantity that the sensor must follow.
+
+        Returns
+        -------
+        bool
+            True if the reading differs from the one before.
+        """
+        if self._heard is None:
+            self._heard = stamp
+        silent = stamp - self._heard > self._timeout_ns
+        if not math.isfinite(reading):
+            if silent:
+                self._give_up('lost')
+            return False
+        if silent:
+            self._recent.clear()
+        self._heard = stamp
+        changed = not self._recent or reading != self._recent[-1]
+        if changed:
+            self._followed_at_change = followed
+        self._recent.append(reading)
+        if abs(followed - self._followed_at_change) > self._frozen_after:
+            self._frozen = True
+        self._frozen = self._frozen and not changed
+        if self._frozen:
+            self._give_up('frozen')
+        else:
+            self.problem = ''
+            self.value = median(self._recent)
+        return changed
+
+    def _give_up(self, problem: str) -> None:
+        self.problem = f'{self.name} {problem}'
+        self.value = math.nan
+
+
 class Autotrawl:
     """Autotrawl: controller of both winches.
 
@@ -77,7 +132,7 @@ class Autotrawl:
     settings
         Mode, gains and limits.
     lengths
-        Wanted lengths (port, starboard) as they stand when it takes over, m.
+        Wanted lengths (port, starboard) at the start, m.
     """
 
     def __init__(self, settings: AutotrawlSettings, lengths: tuple[float, float]) -> None:
@@ -91,15 +146,19 @@ class Autotrawl:
         self._giving = [0.0, 0.0]
         self._stamp: int | None = None
         self._counters = [
-            Watch(f'{side} counter', lost_s=LOST_S, frozen_after=FREEZE_M) for side in SIDES
+            SensorWatch(
+                f'{side} counter', lost_s=OPTIONS.lost_s, frozen_after=OPTIONS.frozen_counter_m
+            )
+            for side in SIDES
         ]
         self._cells = [
-            Watch(f'{side} load cell', lost_s=LOST_S, frozen_after=1.0) for side in SIDES
+            SensorWatch(f'{side} load cell', lost_s=OPTIONS.lost_s, frozen_after=1.0)
+            for side in SIDES
         ]
         self._changes = [0, 0]
         self._travel = 0.0
-        self._smooth = [LowPass(BALANCE_S) for _ in SIDES]
-        self._means = [LowPass(MEAN_S) for _ in SIDES]
+        self._smooth = [LowPass(OPTIONS.balance_filter_s) for _ in SIDES]
+        self._means = [LowPass(OPTIONS.mean_filter_s) for _ in SIDES]
         self._at_rest_s = 0.0
         self._bounds: dict[str, bool] = {}
 
@@ -111,7 +170,7 @@ class Autotrawl:
     def change(self, settings: AutotrawlSettings) -> None:
         """Change the settings, without a jump of the wanted lengths.
 
-        In a new mode the warps go from where they are to the set lengths at the winch's speed.
+        In a new mode the warps go from their lengths to the set lengths at the winch's speed.
         """
         if settings.mode != self.settings.mode:
             for side in (0, 1):
@@ -154,23 +213,26 @@ class Autotrawl:
 
     def _time_since(self, stamp: int) -> float:
         before, self._stamp = self._stamp, stamp
-        return 0.0 if before is None else min((stamp - before) / SECOND, LONGEST_GAP_S)
+        return 0.0 if before is None else min((stamp - before) / SECOND, OPTIONS.max_gap_s)
 
     def _look(self, sample: WinchSample, dt: float) -> None:
         for side in (0, 1):
             counter, cell = self._counters[side], self._cells[side]
             length, tension = sample.lengths[side], sample.tensions[side]
             away = abs(length - self._wanted[side])
-            believable = away <= 2 * COUNTER_SHARE * self._wanted[side]
+            believable = away <= 2 * OPTIONS.counter_max_error * self._wanted[side]
             counter.take(length if believable else math.nan, sample.stamp, self._wanted[side])
-            followed = self._changes[1 - side] / FREEZE_CHANGES + self._travel / FREEZE_TRAVEL_M
-            # Under tow no warp is slack: a cell that says so is broken.
+            followed = (
+                self._changes[1 - side] / OPTIONS.frozen_cell_changes
+                + self._travel / OPTIONS.frozen_cell_travel_m
+            )
+            # No warp is slack under tow, so a cell without tension is broken.
             cell_reading = tension if tension > 0.0 else math.nan
             self._changes[side] += cell.take(cell_reading, sample.stamp, followed)
             if math.isfinite(cell.value):
                 self._smooth[side].take(cell.value, dt)
-                if self._at_rest_s < CALM_S:
-                    self._means[side] = LowPass(MEAN_S)
+                if self._at_rest_s < OPTIONS.calm_s:
+                    self._means[side] = LowPass(OPTIONS.mean_filter_s)
                 self._means[side].take(self._smooth[side].value, dt)
 
     def _approach_set_lengths(self, dt: float) -> None:
@@ -183,15 +245,18 @@ class Autotrawl:
             self._at_rest_s += dt
 
     def _follow_counters(self, dt: float) -> None:
-        """Integrate the counters' deviation; only while the warps should be at rest."""
+        """Integrate the counters' deviation, only while the warps stand still."""
         errors = [self._set[k] - self._counters[k].value for k in (0, 1)]
         if self.settings.mode == 'tension':
             errors = [0.5 * sum(errors)] * 2
         for side, error in enumerate(errors):
-            if self._at_rest_s < SETTLING_S or not math.isfinite(error):
+            if self._at_rest_s < OPTIONS.standstill_s or not math.isfinite(error):
                 continue
-            rate = _within(_beyond(error, COUNTER_DEAD_BAND_M) / COUNTER_S, COUNTER_SPEED)
-            most = COUNTER_SHARE * self._set[side]
+            rate = _within(
+                _beyond(error, OPTIONS.counter_dead_band_m) / OPTIONS.counter_time_s,
+                OPTIONS.counter_max_speed,
+            )
+            most = OPTIONS.counter_max_error * self._set[side]
             self._parts[side] = self._bounded(
                 f'{SIDES[side]} counter', self._parts[side] + rate * dt, most
             )
@@ -207,7 +272,7 @@ class Autotrawl:
         if math.isnan(difference):
             return
         rate = self.settings.balance_gain * _beyond(difference, self.settings.balance_dead_band)
-        rate = _within(rate, BALANCE_SPEED)
+        rate = _within(rate, OPTIONS.balance_max_speed)
         most = 0.5 * self.settings.max_difference * 0.5 * sum(self._set)
         self._balance = self._bounded('balance', self._balance + rate * dt, most)
 
@@ -219,7 +284,7 @@ class Autotrawl:
             tension = self._cells[side].value
             scale = share * self._set[side] / GIVE_LENGTH_M
             wanted = -self._given[side] / settings.haul_back_s
-            if math.isfinite(tension) and self._at_rest_s >= CALM_S:
+            if math.isfinite(tension) and self._at_rest_s >= OPTIONS.calm_s:
                 held = settings.tension if settings.tension > 0.0 else self._means[side].value
                 excess = _beyond(tension / held - 1.0, settings.give_dead_band)
                 gain = settings.give_gain if excess > 0.0 else settings.haul_gain
@@ -234,8 +299,8 @@ class Autotrawl:
 
     def _sum(self, side: int) -> float:
         speed = self._giving[side]
-        # A winch moves at a speed while it is wanted as far away as it needs to stop from it.
-        ahead = speed * (abs(speed) / (2 * self.settings.max_acceleration) + LEAD_S)
+        # Lead of the wanted length: braking distance v² / 2a plus the latency.
+        ahead = speed * (abs(speed) / (2 * self.settings.max_acceleration) + OPTIONS.latency_s)
         balance = _SIGNS[side] * self._balance
         return self._set[side] + self._parts[side] + balance + self._given[side] + ahead
 

@@ -9,12 +9,12 @@ class LowPass:
     Parameters
     ----------
     time_constant
-        In s.
+        Time constant, s.
 
     Attributes
     ----------
     value : float
-        The smoothed reading, NaN before the first.
+        Smoothed reading, NaN before the first.
     """
 
     def __init__(self, time_constant: float) -> None:
@@ -27,5 +27,6 @@ class LowPass:
         if not self._begun:
             self.value, self._begun = reading, True
             return
+        # Exact step response, so uneven sample times do not matter.
         share = -math.expm1(-dt / self._time_constant)
         self.value = self.value + share * (reading - self.value)

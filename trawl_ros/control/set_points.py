@@ -1,4 +1,4 @@
-"""Set points from outside: held to limits, and given up when they fall silent."""
+"""Set points from outside: checked against limits, and dropped after a timeout."""
 
 import math
 from dataclasses import dataclass
@@ -13,15 +13,15 @@ class SetPointLimits:
     Attributes
     ----------
     min_length, max_length
-        Of a warp, m.
+        Length of a warp, m.
     max_step
-        Furthest (m) that a wanted length may be from what the counter shows.
+        Largest difference (m) between a wanted length and the counter.
     max_speed
-        Of the ship through the water, m/s.
+        Speed of the ship through the water, m/s.
     max_turn
         Rate of turn, rad/s.
     timeout_ns
-        Silence after which the warps are to be held as they are.
+        Silence after which the warps are held at their lengths, ns.
     """
 
     min_length: float = 50.0
@@ -38,7 +38,7 @@ class SetPointGuard:
     Parameters
     ----------
     limits
-        Bounds of the set points that are passed on.
+        Limits of the set points.
     """
 
     def __init__(self, limits: SetPointLimits) -> None:
@@ -47,23 +47,24 @@ class SetPointGuard:
         self._heard: int | None = None
 
     def see(self, lengths: tuple[float, float]) -> None:
-        """Take note of what the counters show, m, port first."""
+        """Record the counters, m, port first."""
         self._counters = lengths
 
     @property
     def active(self) -> bool:
-        """True while set points come."""
+        """True while set points arrive."""
         return self._heard is not None
 
     def warps(self, wanted: tuple[float, float], now: int) -> tuple[float, float]:
-        """Check wanted lengths (m, NaN for a side that is to stay as it is) at a time, ns.
+        """Check wanted lengths (m, NaN for a side without a change) at a time, ns.
 
         Raises
         ------
         ValueError
-            If one is beyond the limits, or counters are not known yet; nothing is to be done
-            then.
+            If a length is outside the limits, or its counter is not known yet; no set point is
+            then passed on.
         """
+        # Sentences name no found value: nodes count refusals by their text.
         low, high = self._limits.min_length, self._limits.max_length
         for side, length, counter in zip(
             ('port', 'starboard'), wanted, self._counters, strict=True
@@ -71,12 +72,12 @@ class SetPointGuard:
             if math.isnan(length):
                 continue
             if not low <= length <= high:
-                raise ValueError(f'a {side} warp beyond {low:g} to {high:g} m')
+                raise ValueError(f'{side} warp: expected {low:g} to {high:g} m')
             if math.isnan(counter):
-                raise ValueError(f'a {side} warp before its counter is known')
+                raise ValueError(f'{side} warp: expected a reading of its counter first')
             if abs(length - counter) > self._limits.max_step:
                 raise ValueError(
-                    f'a {side} warp more than {self._limits.max_step:g} m from its counter'
+                    f'{side} warp: expected at most {self._limits.max_step:g} m from its counter'
                 )
         self._heard = now
         return wanted
@@ -87,16 +88,16 @@ class SetPointGuard:
         Raises
         ------
         ValueError
-            If one is beyond the limits or missing.
+            If one is outside the limits or missing.
         """
         if not 0.0 <= speed <= self._limits.max_speed:
-            raise ValueError(f'a speed beyond 0 to {self._limits.max_speed:g} m/s')
+            raise ValueError(f'speed: expected 0 to {self._limits.max_speed:g} m/s')
         if not abs(turn) <= self._limits.max_turn:
-            raise ValueError(f'a rate of turn beyond {self._limits.max_turn:g} rad/s')
+            raise ValueError(f'rate of turn: expected at most {self._limits.max_turn:g} rad/s')
         return speed, turn
 
     def silence(self, now: int) -> tuple[float, float] | None:
-        """Give the lengths that are to be held, once, when set points have fallen silent."""
+        """Return the lengths to hold, once, after the timeout; None otherwise."""
         if self._heard is None or now - self._heard <= self._limits.timeout_ns:
             return None
         self._heard = None

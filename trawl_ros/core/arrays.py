@@ -1,4 +1,4 @@
-"""Array types, by their elements; shapes stand in docstrings, as numpy cannot check them."""
+"""Array types by element; shapes are given in docstrings, because NumPy cannot check them."""
 
 from typing import TYPE_CHECKING
 
@@ -7,9 +7,6 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 """Real numbers."""
-
-ComplexArray = NDArray[np.complex128]
-"""Complex numbers: modes, and derivatives by a complex step."""
 
 BoolArray = NDArray[np.bool_]
 """Masks."""
@@ -21,10 +18,10 @@ StampArray = NDArray[np.int64]
 """Stamps, integer nanoseconds."""
 
 ByteArray = NDArray[np.uint8]
-"""Bytes: images of the trawl sonar, and what messages hold."""
+"""Bytes of sonar images and messages."""
 
 if TYPE_CHECKING:
     Slice = slice[int, int, None]
 else:
     Slice = slice
-"""Contiguous part of an array; builtin slices take no types when they run."""
+"""Contiguous part of an array; builtin slices accept no type arguments at run time."""

@@ -1,6 +1,6 @@
-"""Errors of the input, each as one sentence a user can act on.
+"""Errors of the input, each with one sentence that tells the user what to do.
 
-Every message names the file, key or topic, what was found there and what was expected.
+Every message names the file, key or topic, what was found and what was expected.
 """
 
 from traceback import format_exception
@@ -20,7 +20,7 @@ Refusal = Literal[
 
 
 class TrawlError(Exception):
-    """Base class of all errors of the input; commands print them and exit with 1.
+    """Base class of all input errors; commands print them and exit with 1.
 
     Examples
     --------
@@ -34,7 +34,7 @@ class TrawlError(Exception):
 
 
 class GearError(TrawlError):
-    """Gear file that is missing, unreadable or says something impossible.
+    """Gear file that is missing, unreadable or impossible.
 
     Examples
     --------
@@ -47,7 +47,7 @@ class GearError(TrawlError):
 
 
 class ScenarioError(TrawlError):
-    """Scenario file that is missing, unreadable or asks for something impossible.
+    """Scenario file that is missing, unreadable or impossible.
 
     Examples
     --------
@@ -64,11 +64,11 @@ class InstrumentError(TrawlError):
 
 
 class MessageError(TrawlError):
-    """Message whose content contradicts its topic or type."""
+    """Message with content that contradicts its topic or type."""
 
 
 class BagError(TrawlError):
-    """Bag that is missing, damaged, or does not hold what was asked for.
+    """Bag that is missing, damaged, or without the wanted data.
 
     Examples
     --------
@@ -81,15 +81,15 @@ class BagError(TrawlError):
 
 
 class LogError(TrawlError):
-    """CSV log or mapping that cannot be turned into a bag."""
+    """CSV log or mapping that cannot be converted to a bag."""
 
 
 class SentenceError(TrawlError):
-    """Table of sentences, or link for them, that is missing, unreadable or impossible."""
+    """Table of sentences, or its link, that is missing, unreadable or impossible."""
 
 
 class RosMissing(TrawlError):
-    """Missing ROS 2 for a function that needs it; ``reason`` is the import that failed."""
+    """Missing ROS 2 for a function that needs it; ``reason`` is the failed import."""
 
     def __init__(self, what: str, reason: ImportError) -> None:
         super().__init__(
@@ -101,9 +101,9 @@ class RosMissing(TrawlError):
 class NoSteadyState(TrawlError):
     """Gear without usable steady state at the wanted warp length and speed.
 
-    ``reason`` says why in a word; where a root was found, which of its faults came first. Where a
-    command computes what would help, ``remedy`` names it in a sentence; commands, nodes and, from
-    Python 3.11 on, tracebacks tell it below the message.
+    ``reason`` is the reason in a word; if a root was found, its first fault. ``remedy`` is a
+    sentence that names the command for advice, if there is one. Commands, nodes and, from Python
+    3.11 on, tracebacks print it below the message.
 
     Examples
     --------
@@ -125,10 +125,9 @@ class NoSteadyState(TrawlError):
 
 
 def sentence_of(reason: Exception) -> str:
-    """Describe an error in a sentence, for threads and processes that cannot let it rise.
+    """Describe an error in a sentence, for threads and processes that cannot raise it.
 
-    A refused tow is told with what would help, an error of the program with all that helps to mend
-    it.
+    A refused tow comes with its remedy, and an error of the program with its traceback.
     """
     if isinstance(reason, NoSteadyState) and reason.remedy:
         return f'{reason}\n{reason.remedy}'

@@ -1,4 +1,4 @@
-"""Files and folders of results: checked before the work, and written whole."""
+"""Files and folders of results: checked before the work, and written completely or not at all."""
 
 import json
 import math
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 
 def empty_folder(path: Path, *, force: bool) -> Path:
-    """Check, before the work, that its results can go into a folder, which need not exist yet.
+    """Check before the work that results can be written to a folder, which may not exist yet.
 
     Raises
     ------
     TrawlError
-        If there is something in it already, unless ``force`` allows replacing it, or if it cannot
-        be written to.
+        If it contains files, unless ``force`` allows replacing them, or if it cannot be written
+        to.
     """
     require_writable(path, TrawlError)
     if path.is_dir() and any(path.iterdir()) and not force:
@@ -36,7 +36,7 @@ def empty_folder(path: Path, *, force: bool) -> Path:
 
 
 def new_folder(path: Path, error: type[TrawlError]) -> Path:
-    """Check, before the work, that a folder can be made.
+    """Check before the work that a folder can be made.
 
     Raises
     ------
@@ -50,16 +50,16 @@ def new_folder(path: Path, error: type[TrawlError]) -> Path:
 
 
 def free_path(path: Path, *, or_empty: bool = False, suffix: str = '') -> Path:
-    """Return a path, or the first free one of ``NAME_2``, ``NAME_3`` … where it is taken.
+    """Return a path, or the first free one of ``NAME_2``, ``NAME_3`` … if it exists.
 
     Parameters
     ----------
     path
         The path.
     or_empty
-        True if a folder without files is free too.
+        True to accept an empty folder too.
     suffix
-        End of the name, behind the number.
+        End of the name, after the number.
     """
     name = path.name.removesuffix(suffix)
     numbered = (path.with_name(f'{name}_{number}{suffix}') for number in count(2))
@@ -73,12 +73,12 @@ def _is_free(path: Path, or_empty: bool) -> bool:
 
 
 def require_writable(path: Path, error: type[TrawlError]) -> None:
-    """Check that something can be written at a path, which leaves nothing behind.
+    """Check that a path can be written, without leaving a file.
 
     Raises
     ------
     TrawlError
-        Of the type ``error``, if it cannot.
+        Of the type ``error``, if it cannot be written.
     """
     try:
         with TemporaryFile(dir=_nearest(path)) as file:
@@ -88,7 +88,7 @@ def require_writable(path: Path, error: type[TrawlError]) -> None:
 
 
 def _nearest(path: Path) -> Path:
-    """Return the path, or the first above it, that there is."""
+    """Return the path or its nearest existing parent."""
     for place in (path, *path.parents):
         with suppress(FileNotFoundError, NotADirectoryError):
             place.lstat()
@@ -97,12 +97,12 @@ def _nearest(path: Path) -> Path:
 
 
 def made_folder(path: Path) -> Path:
-    """Make a folder, and those above it, where they do not exist.
+    """Make a folder and its parents, if they do not exist.
 
     Raises
     ------
     TrawlError
-        If it cannot be made.
+        If the folder cannot be made.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -113,22 +113,22 @@ def made_folder(path: Path) -> Path:
 
 @contextmanager
 def written(path: Path) -> Iterator[Path]:
-    """Write a file whole or not at all, whenever one is interrupted or the disk is full.
+    """Write a file completely or not at all, also when interrupted or on a full disk.
 
     Parameters
     ----------
     path
-        The file. Where it is a link, the link is replaced, and what it leads to stays as it is.
+        The file. A link is replaced; its target stays unchanged.
 
     Yields
     ------
     Path
-        A file beside it, with the same suffix, to be written; it then takes the other's place.
+        Temporary file in the same folder, with the same suffix, which replaces the file.
 
     Raises
     ------
     TrawlError
-        If it cannot be written.
+        If the file cannot be written.
     """
     draft = path.with_name(f'.{os.getpid()}.{path.name}')
     try:
@@ -144,13 +144,12 @@ def written(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def written_folder(path: Path, error: type[TrawlError]) -> Iterator[Path]:
-    """Write a folder whole or not at all, whenever one is interrupted or the disk is full.
+    """Write a folder completely or not at all, also when interrupted or on a full disk.
 
     Yields
     ------
     Path
-        A path of the same name elsewhere on the disk, where the folder is to be made; it then
-        takes the other's place.
+        Temporary path of the same name on the same disk, which replaces the folder.
 
     Raises
     ------
@@ -171,49 +170,49 @@ def written_folder(path: Path, error: type[TrawlError]) -> Iterator[Path]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write text that ends with one line's end, as `written` does."""
+    """Write text with one newline at its end, completely or not at all."""
     with written(path) as draft:
-        # Names of files may hold bytes that are no text.
+        # File names may contain bytes that are not valid text.
         draft.write_bytes(f'{text.rstrip()}\n'.encode('utf-8', 'backslashreplace'))
 
 
 def write_json(
     path: Path, record: object, *, indent: int | None = None, ensure_ascii: bool = True
 ) -> None:
-    """Write JSON as `written` does.
+    """Write JSON, completely or not at all.
 
     Raises
     ------
     ValueError
-        If a number is not finite, which JSON does not know.
+        If a number is not finite, which JSON does not allow.
     """
     write_text(path, json.dumps(record, indent=indent, ensure_ascii=ensure_ascii, allow_nan=False))
 
 
 def finite(value: float) -> float | None:
-    """Return a number as JSON has it: None where it is NaN or infinite."""
+    """Return a number for JSON: None if it is NaN or infinite."""
     return float(value) if math.isfinite(value) else None
 
 
 def write_figure(path: Path, figure: 'Figure', dpi: float) -> None:
-    """Write a figure as PNG as `written` does."""
+    """Write a figure as PNG, completely or not at all."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     figure.dpi = dpi
     with written(path) as draft:
-        # `savefig` draws all of it once more beforehand, for its layout, which a canvas does too.
+        # `savefig` would draw the figure twice for its layout.
         FigureCanvasAgg(figure).print_png(draft)  # type: ignore[no-untyped-call]
 
 
 def appending(path: Path) -> TextIO:
-    """Open a text file of results to add to it; a link, pipe or device is refused.
+    """Open a text file of results for appending; a link, pipe or device is refused.
 
     Raises
     ------
     TrawlError
-        If it cannot be opened.
+        If the file cannot be opened.
     """
-    # Without O_NONBLOCK, opening a pipe that nobody reads would wait for ever.
+    # Without O_NONBLOCK, opening a pipe without a reader would wait forever.
     flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
     try:
         number = os.open(path, flags, 0o666)
@@ -221,23 +220,23 @@ def appending(path: Path) -> TextIO:
         raise TrawlError(f'{path}: cannot be written ({reason.strerror})') from reason
     if not stat.S_ISREG(os.fstat(number).st_mode):
         os.close(number)
-        raise TrawlError(f'{path}: is a pipe or device; expected a file or a new path')
+        raise TrawlError(f'{path}: found a pipe or device, expected a file or a new path')
     return os.fdopen(number, 'a', encoding='utf-8')
 
 
 def is_there(path: Path, error: type[TrawlError]) -> bool:
-    """Return whether a file that a node continues, and will replace, exists.
+    """Return True if a file exists that a node continues and will replace.
 
-    Whoever continues it checks by its content that it is its own before it writes.
+    The caller checks the content before it writes.
 
     Raises
     ------
     TrawlError
-        Of the type ``error``, if something other than a file is there: a link would be replaced,
-        and a pipe or device would be read without end.
+        Of the type ``error``, if it is not a regular file: a link would be replaced, and a pipe or
+        device would be read without end.
     """
     if not os.path.lexists(path):
         return False
     if not stat.S_ISREG(path.lstat().st_mode):
-        raise error(f'{path}: is a link, folder, pipe or device; expected a file or a new path')
+        raise error(f'{path}: found a link, folder, pipe or device, expected a file or a new path')
     return True

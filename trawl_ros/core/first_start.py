@@ -1,4 +1,4 @@
-"""First start on a machine: where compiled loops are kept, and what is said while they compile."""
+"""First start on a machine: folder of compiled loops, and messages while they compile."""
 
 import logging
 import os
@@ -12,29 +12,30 @@ from dataclasses import dataclass
 from pathlib import Path
 
 LOG = logging.getLogger('trawl_ros.first_start')
-"""Without a handler Python prints its warnings on stderr; nodes hand them to the log of ROS."""
+"""Without a handler, Python prints its warnings on stderr; nodes pass them to the ROS log."""
 
 PACKAGE = Path(__file__).parents[1]
 
 QUIET_S = 1.0
-"""A compilation that takes less is not mentioned."""
+"""Compilation time without a message, s."""
 
 LINE_EVERY_S = 5.0
+"""Interval of messages, s."""
 
-USUAL = '20 to 60 s'
-"""Time that the loops of a tow take to compile, on one core of 2020 to 2025."""
+USUAL_TIME = '20 to 60 s'
+"""Time to compile the loops of a tow, on one core of 2020 to 2025."""
 
 
 @dataclass(frozen=True)
 class LoopFolder:
-    """Folder of compiled loops, None where no folder can be written to; ``why`` says so."""
+    """Folder of compiled loops, None if no folder can be written to; ``why`` is the reason."""
 
     path: Path | None
     why: str
 
 
 def loop_folder(environment: Mapping[str, str] = os.environ) -> LoopFolder:
-    """Choose the folder of compiled loops: the first that can be written to.
+    """Choose the first folder for compiled loops that can be written to.
 
     The order is ``NUMBA_CACHE_DIR``, the package, the user's cache and a temporary folder.
     """
@@ -63,9 +64,9 @@ def loop_folder(environment: Mapping[str, str] = os.environ) -> LoopFolder:
 
 
 def private_folder() -> Path | None:
-    """Return a temporary folder that no other user can write to; None where there cannot be one.
+    """Return a temporary folder that no other user can write to, or None.
 
-    Compiled loops are code, so a folder that somebody else has made under this name is not used.
+    Compiled loops are code, so a folder of another user with this name is not used.
     """
     folder = _private_path()
     if folder is None:
@@ -82,17 +83,17 @@ def private_folder() -> Path | None:
 def _private_path() -> Path | None:
     try:
         place = Path(tempfile.gettempdir())
-        # The working folder is the last choice of `tempfile`, where nobody expects a folder.
+        # `tempfile` falls back to the working folder, where users expect no such folder.
         return None if place == Path.cwd() else place / f'trawl_ros-{os.getuid()}'
     except OSError:
         return None
 
 
 def need_home() -> bool:
-    """Give this process a temporary home where it has none that can be written to.
+    """Give this process a temporary home if it has none that can be written to.
 
-    ROS 2, Dask and matplotlib write there; without it the first refuses to start, the second makes
-    a folder named ``~``, and the third warns.
+    ROS 2, Dask and matplotlib write to it. Without it ROS 2 does not start, Dask makes a folder
+    named ``~``, and matplotlib warns.
 
     Returns
     -------
@@ -110,7 +111,7 @@ def need_home() -> bool:
 def _home(environment: Mapping[str, str]) -> Path | None:
     home = Path(environment.get('HOME', ''))
     own = home.is_absolute() and home.is_dir() and _takes_files(home)
-    # The one that `need_home` gave does not stay.
+    # The folder of `need_home` is temporary, so it is no home.
     return home if own and home != _private_path() else None
 
 
@@ -125,12 +126,12 @@ def _takes_files(folder: Path) -> bool:
 
 
 class CompilationWatch:
-    """Watch of compilation: it says how far that is, and ends it where a stop is wanted.
+    """Watch of compilation, which reports its progress and stops it on request.
 
     Parameters
     ----------
     clock
-        Gives wall time in s.
+        Function that returns wall time in s.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -145,7 +146,7 @@ class CompilationWatch:
 
     @contextmanager
     def stopping(self, wanted: Callable[[], bool]) -> Iterator[None]:
-        """While entered, raise KeyboardInterrupt out of a compilation once a stop is wanted."""
+        """Raise KeyboardInterrupt from a compilation within this context if a stop is wanted."""
         self._stop = wanted
         try:
             yield
@@ -153,20 +154,20 @@ class CompilationWatch:
             self._stop = lambda: False
 
     def begin(self) -> None:
-        """Note that a loop, perhaps one that another needs, begins to be compiled."""
+        """Record the start of a compilation, which may be nested."""
         if self._under_way == 0:
             self._began_s = self._clock()
         self._under_way += 1
 
     def end(self) -> None:
-        """Note that a loop is compiled, or has failed."""
+        """Record the end of a compilation, or its failure."""
         self._loops += 1
         self._under_way -= 1
         if self._under_way == 0:
             self._spent_s += self._clock() - self._began_s
 
     def step(self) -> None:
-        """Note a step while a loop is compiled: say how far that is, or stop.
+        """Report the progress during a compilation, or stop it.
 
         Raises
         ------
@@ -178,7 +179,7 @@ class CompilationWatch:
         spent = self._spent_s + self._clock() - self._began_s
         if self._said_s is None and spent >= QUIET_S:
             why = 'once' if self.folder is None else self.folder.why
-            LOG.warning('compiling the loops of the model takes %s, %s', USUAL, why)
+            LOG.warning('compiling the loops of the model takes %s, %s', USUAL_TIME, why)
         elif self._said_s is not None and spent - self._said_s >= LINE_EVERY_S:
             LOG.warning('compiled %d loops in %.0f s', self._loops, spent)
         else:

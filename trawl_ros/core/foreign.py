@@ -1,4 +1,4 @@
-"""Boundary to foreign files: any error of their reading becomes a sentence."""
+"""Boundary to foreign files: every error in reading them becomes one sentence."""
 
 import json
 import os
@@ -18,10 +18,10 @@ def reading(
     error: type[TrawlError],
     place: Callable[[], str] | None = None,
 ) -> Iterator[None]:
-    """Convert errors of libraries that read a foreign file into the project's own error.
+    """Convert errors of libraries that read a foreign file to errors of the project.
 
-    Readers say themselves what they expected wherever they know; this is for what they could not
-    foresee, so that no file can show a traceback.
+    Readers report the faults that they expect. This covers all others, so that no file can cause a
+    traceback.
 
     Parameters
     ----------
@@ -30,13 +30,13 @@ def reading(
     error
         Class of the error to raise.
     place
-        Says where in the file the reader was (``'byte 4711'``, ``'line 3'``), asked only then.
+        Function that returns the place in the file (``'byte 4711'``, ``'line 3'``) after an error.
 
     Raises
     ------
     TrawlError
-        Of class ``error``, with file, place and what was raised. Errors of the project pass
-        unchanged, as does a wish to stop.
+        Of class ``error``, with file, place and the original error. Errors of the project and
+        KeyboardInterrupt pass unchanged.
     """
     try:
         yield
@@ -44,16 +44,18 @@ def reading(
         raise
     except Exception as reason:
         where = f'{path}: {place()}' if place else str(path)
-        raise error(f'{where}: cannot be read ({short(reason)}), expected a sound file') from reason
+        raise error(
+            f'{where}: cannot be read ({short(reason)}), expected an undamaged file'
+        ) from reason
 
 
 def open_file(path: Path, error: type[TrawlError]) -> BinaryIO:
-    """Open a file for reading if it is one: a pipe or device would wait, or never end.
+    """Open a regular file for reading; a pipe or device could block or never end.
 
     Raises
     ------
     TrawlError
-        Of class ``error``, if it is something else or cannot be opened.
+        Of class ``error``, if it is not a regular file or cannot be opened.
     """
     try:
         number = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -63,7 +65,7 @@ def open_file(path: Path, error: type[TrawlError]) -> BinaryIO:
         raise error(f'{path}: cannot be read ({reason.strerror})') from reason
     if not stat.S_ISREG(os.fstat(number).st_mode):
         os.close(number)
-        raise error(f'{path}: not a file but a folder, pipe or device; expected a file')
+        raise error(f'{path}: found a folder, pipe or device, expected a file')
     return os.fdopen(number, 'rb')
 
 
@@ -73,8 +75,8 @@ def load_json(path: Path, error: type[TrawlError]) -> object:
     Raises
     ------
     TrawlError
-        Of class ``error``, if it is missing, too large or no JSON, or holds NaN or a number that is
-        too large.
+        Of class ``error``, if it is missing, too large or not JSON, or contains NaN or a number
+        that is too large.
     """
     with open_file(path, error) as stream:
         data = stream.read(JSON_BYTES.value + 1)
@@ -92,7 +94,7 @@ def parse_json(data: bytes) -> object:
     Raises
     ------
     ValueError
-        If it is none, is nested too deeply, or holds NaN or a number that is too large.
+        If it is not JSON, is nested too deeply, or contains NaN or a number that is too large.
     """
     try:
         return json.loads(
@@ -106,29 +108,29 @@ def _bounded(text: str) -> float:
     value = float(text)
     if not abs(value) <= YAML_NUMBER.value:
         raise ValueError(
-            f'found the number {one_line(text, 30)}, expected a finite one of magnitude '
+            f'found the number {one_line(text, 30)}, expected a finite number of magnitude '
             f'{YAML_NUMBER.value:.0e} at most'
         )
     return value
 
 
 def _bounded_int(text: str) -> int:
-    # Not converted before its size is known: that takes a time that grows with its square.
+    # Check the size first: the conversion takes time proportional to the square of the length.
     _bounded(text)
     return int(text)
 
 
 def short(reason: Exception, width: int = 120) -> str:
-    """Name an exception in one line of bounded length."""
+    """Describe an exception in one line of limited length."""
     if isinstance(reason, OSError) and reason.strerror:
         return reason.strerror
     return one_line(f'{type(reason).__name__}: {reason}'.rstrip(': '), width)
 
 
 def one_line(text: str, width: int) -> str:
-    """Cut what a file or message brings along to its first line, at most ``width`` long."""
-    # Not split before it is cut: what is foreign may be long.
+    """Return the first line of a foreign text, at most ``width`` long."""
+    # Cut before splitting, because a foreign text may be long.
     text = text[: 2 * width].split('\n', 1)[0].rstrip()
-    # It may hold control characters, which a terminal would obey.
+    # Replace control characters, which a terminal would execute.
     text = ''.join(sign if sign.isprintable() else '?' for sign in text)
     return text if len(text) <= width else f'{text[: width - 3]}...'

@@ -1,8 +1,8 @@
-"""Conversion of positions in ``map`` and latitude and longitude.
+"""Conversion between positions in ``map`` and latitude and longitude.
 
-``map`` is the plane that touches the ellipsoid WGS 84 at the datum (NIMA TR8350.2). A point
-goes to geocentric coordinates by the rotation of east, north, up at the datum, and on to
-latitude by Bowring's formula (1976), which near the surface is good to far below a millimetre.
+``map`` is the tangent plane of the ellipsoid WGS 84 at the datum (NIMA TR8350.2). A point is
+rotated from east, north, up at the datum to geocentric coordinates. Bowring's formula (1976) then
+gives the latitude, with an error far below a millimetre near the surface.
 """
 
 import math
@@ -12,9 +12,9 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 
-SEMI_MAJOR = 6_378_137.0
+SEMI_MAJOR_M = 6_378_137.0
 FLATTENING = 1 / 298.257_223_563
-_SEMI_MINOR = SEMI_MAJOR * (1 - FLATTENING)
+_SEMI_MINOR = SEMI_MAJOR_M * (1 - FLATTENING)
 _ECCENTRICITY_2 = FLATTENING * (2 - FLATTENING)
 _SECOND_ECCENTRICITY_2 = _ECCENTRICITY_2 / (1 - _ECCENTRICITY_2)
 
@@ -31,16 +31,16 @@ def to_latitude_longitude(position: FloatArray, datum: Datum) -> tuple[float, fl
     """Return latitude and longitude (degrees) of a position (3,) in ``map``, m."""
     east, north, up = (float(part) for part in position)
     lat, lon = math.radians(datum.latitude), math.radians(datum.longitude)
-    curvature = SEMI_MAJOR / math.sqrt(1 - _ECCENTRICITY_2 * math.sin(lat) ** 2)
-    # In the meridian plane of the datum, then turned about the Earth's axis.
+    curvature = SEMI_MAJOR_M / math.sqrt(1 - _ECCENTRICITY_2 * math.sin(lat) ** 2)
+    # Distances from and along the Earth's axis, in the meridian plane of the datum.
     outward = (curvature + up) * math.cos(lat) - north * math.sin(lat)
     axial = (curvature * (1 - _ECCENTRICITY_2) + up) * math.sin(lat) + north * math.cos(lat)
     longitude = lon + math.atan2(east, outward)
     distance = math.hypot(outward, east)
-    parametric = math.atan2(axial * SEMI_MAJOR, distance * _SEMI_MINOR)
+    parametric = math.atan2(axial * SEMI_MAJOR_M, distance * _SEMI_MINOR)
     latitude = math.atan2(
         axial + _SECOND_ECCENTRICITY_2 * _SEMI_MINOR * math.sin(parametric) ** 3,
-        distance - _ECCENTRICITY_2 * SEMI_MAJOR * math.cos(parametric) ** 3,
+        distance - _ECCENTRICITY_2 * SEMI_MAJOR_M * math.cos(parametric) ** 3,
     )
     return math.degrees(latitude), math.degrees(math.remainder(longitude, 2 * math.pi))
 
@@ -50,7 +50,7 @@ def to_east_north(
 ) -> tuple[FloatArray, FloatArray]:
     """Return east and north (n,) in ``map``, m, of places (n,) on the ellipsoid, degrees.
 
-    The inverse of `to_latitude_longitude` but for the height, which a place at sea does not need.
+    This is the inverse of `to_latitude_longitude`, without the height.
     """
     lat, lon = np.radians(latitudes), np.radians(longitudes - datum.longitude)
     at = math.radians(datum.latitude)
@@ -62,6 +62,6 @@ def to_east_north(
 
 
 def _in_meridian_plane(latitude: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Distance (m) from the Earth's axis and height above the equator, of the ellipsoid."""
-    curvature = SEMI_MAJOR / np.sqrt(1 - _ECCENTRICITY_2 * np.sin(latitude) ** 2)
+    """Return the distance (m) from the Earth's axis and the height above the equator."""
+    curvature = SEMI_MAJOR_M / np.sqrt(1 - _ECCENTRICITY_2 * np.sin(latitude) ** 2)
     return curvature * np.cos(latitude), curvature * (1 - _ECCENTRICITY_2) * np.sin(latitude)

@@ -1,7 +1,7 @@
 """Limits of foreign files and messages, in one table.
 
-Each is applied before memory is taken or time is spent. What stands here is all there is: readers
-import a limit from this table, and `docs/limits.md` is held equal to it by a test.
+Each is applied before memory or time is spent. The table is complete: readers import their limits
+from it, and a test compares it with `docs/limits.md`.
 """
 
 from dataclasses import dataclass
@@ -14,11 +14,11 @@ class Limit:
     Attributes
     ----------
     value
-        The largest that is accepted.
+        Largest accepted value.
     unit
-        Of the value; empty for a count that ``what`` names.
+        Unit of the value; empty for a count named by ``what``.
     what
-        The bounded quantity, in words.
+        Limited quantity, in words.
     """
 
     value: int

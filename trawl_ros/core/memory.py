@@ -1,39 +1,43 @@
-"""Memory that is kept for the next large array rather than handed back to the system."""
+"""Setting of the C library to keep freed memory for the next large array."""
 
 import ctypes
 import sys
 from functools import cache
 from os import environ
 
-MMAP_THRESHOLD, TRIM_THRESHOLD = -3, -1
-"""Numbers of glibc's options."""
+M_MMAP_THRESHOLD, M_TRIM_THRESHOLD = -3, -1
+"""Parameters of glibc's mallopt."""
 
-SETTINGS = 'MALLOC_MMAP_THRESHOLD_', 'MALLOC_TRIM_THRESHOLD_', 'GLIBC_TUNABLES'
-"""Variables by which a user sets them."""
+USER_VARIABLES = 'MALLOC_MMAP_THRESHOLD_', 'MALLOC_TRIM_THRESHOLD_', 'GLIBC_TUNABLES'
+"""Environment variables with which a user sets them."""
 
-OF_DASK = {'MALLOC_TRIM_THRESHOLD_': '65536'}
-"""Variable that Dask sets for each of its workers: a fifth of a study went into new pages."""
+DASK_VARIABLES = {'MALLOC_TRIM_THRESHOLD_': '65536'}
+"""Variable that Dask sets for its workers; with it, new pages took a fifth of a study's time."""
 
-LARGE = 32 * 2**20
-"""Size (bytes) up to which an array's memory is kept; of twice that, all that is free is handed
-back."""
+KEPT_BYTES = 32 * 2**20
+"""Largest array whose memory is kept; free memory above twice this size is returned."""
 
 
 @cache
 def keep_freed_memory() -> bool:
-    """Have the C library keep freed memory, and tell whether it does.
+    """Make the C library keep freed memory; return True if it does.
 
-    Matrices and their factors take a megabyte or two each and live for a few milliseconds. Handed
-    back to the system every time, their pages are asked for and cleared anew, which takes a tenth
-    of a steady state's time or more. Only glibc has these options; settings of the user stand.
+    Matrices and factors take one or two megabytes each and live for milliseconds. If their pages
+    went back to the system each time, clearing new ones would take a tenth of the time of a steady
+    state. Only glibc has these options. Settings of the user take precedence.
     """
     if not sys.platform.startswith('linux'):
         return False
-    if any(environ.get(name, OF_DASK.get(name)) != OF_DASK.get(name) for name in SETTINGS):
+    if any(
+        environ.get(name, default) != default
+        for name in USER_VARIABLES
+        for default in (DASK_VARIABLES.get(name),)
+    ):
         return False
     library = ctypes.CDLL(None)
     if not hasattr(library, 'gnu_get_libc_version'):
         return False
     return bool(
-        library.mallopt(MMAP_THRESHOLD, LARGE) and library.mallopt(TRIM_THRESHOLD, 2 * LARGE)
+        library.mallopt(M_MMAP_THRESHOLD, KEPT_BYTES)
+        and library.mallopt(M_TRIM_THRESHOLD, 2 * KEPT_BYTES)
     )

@@ -1,15 +1,15 @@
-"""Addresses and names on which programs of this project listen."""
+"""Addresses and names on which programs of the project listen."""
 
 import ipaddress
 import socket
 from urllib.parse import urlsplit
 
 THIS_MACHINE = '127.0.0.1'
-"""Address that nobody from outside reaches: the default of whatever listens."""
+"""Loopback address, the default of all servers."""
 
 
 def is_this_machine(host: str) -> bool:
-    """True if nobody from outside reaches an address."""
+    """Return True for a loopback address."""
     try:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
@@ -17,9 +17,9 @@ def is_this_machine(host: str) -> bool:
 
 
 def is_own_name(text: str, listens_at: str) -> bool:
-    """Return whether ``HOST:PORT`` as a client gives it is an address or a name of this machine.
+    """Return True if ``HOST:PORT`` of a client is an address or a name of this machine.
 
-    A page whose name leads here, though its owner chose the name (DNS rebinding), gives another.
+    This refuses foreign names that resolve to this machine (DNS rebinding).
     """
     host = _host_of(f'//{text}')
     own = socket.gethostname().lower()
@@ -29,7 +29,7 @@ def is_own_name(text: str, listens_at: str) -> bool:
 
 
 def is_own_origin(origin: str) -> bool:
-    """Return whether an origin, as ``http://localhost:8080``, is a page of this machine."""
+    """Return True if an origin, such as ``http://localhost:8080``, is a page of this machine."""
     return is_this_machine(_host_of(origin))
 
 

@@ -1,7 +1,7 @@
 """Parallel tasks on Dask: on the cores of this machine, or on a cluster.
 
-What a task gives depends on the task alone (randomness comes from a seed in it), and results
-are handed over by the task's place, so it does not matter where and when each one was run.
+A result depends only on its task (random numbers come from a seed in it), and results are assigned
+by the name of the task. So it does not matter where and when a task runs.
 """
 
 import asyncio
@@ -25,19 +25,19 @@ from trawl_ros.core.network import THIS_MACHINE
 TaskT = TypeVar('TaskT')
 ResultT = TypeVar('ResultT')
 
-PATIENCE_S = 5.0
-"""Timeout of a scheduler's answer."""
+SCHEDULER_TIMEOUT_S = 5.0
+"""Timeout of the answer of a scheduler."""
 
-START_S = 300.0
-"""Timeout of processes of this machine, which may have much else to do while they start."""
+START_TIMEOUT_S = 300.0
+"""Timeout of the start of processes of this machine, which may be busy."""
 
 TLS_KEYS = "ca-file, client.cert and client.key of Dask's distributed.comm.tls"
 
-QUIET = {
-    # A worker that dies takes its task along; the same task would kill the next one too.
+DASK_OPTIONS = {
+    # No retry of a task whose worker died: it would kill the next worker too.
     'distributed.scheduler.allowed-failures': 0,
-    'distributed.comm.timeouts.connect': f'{START_S:g}s',
-    # Tasks compute for minutes without giving the interpreter back; that is no fault.
+    'distributed.comm.timeouts.connect': f'{START_TIMEOUT_S:g}s',
+    # Tasks compute for minutes without releasing the interpreter, which is no fault.
     'distributed.admin.tick.limit': '1h',
 }
 
@@ -48,24 +48,27 @@ def run_tasks(
     *,
     scheduler: str | None = None,
     workers: int | None = None,
+    scheduler_timeout_s: float = SCHEDULER_TIMEOUT_S,
 ) -> Iterator[tuple[str, ResultT]]:
-    """Run a function on each task, and give results as they come.
+    """Run a function on each task, and yield results as they are done.
 
-    Ending the iteration early, also by Ctrl-C, ends what still runs.
+    An early end of the iteration, for example by Ctrl-C, stops the running tasks.
 
     Parameters
     ----------
     function
-        Of a module, so that another process finds it by its name.
+        Function of a module, so that another process can import it.
     tasks
-        By name; tasks and results can be pickled.
+        Tasks by name; tasks and results must be picklable.
     scheduler
         Address of a Dask cluster, such as ``tcp://10.0.0.5:8786``, whose workers have this package
-        installed; for ``tls://`` keys are those of Dask's configuration (``distributed.comm.tls``).
-        It runs code and sends pickles, so it must be trusted. None runs processes of this
-        machine, which listen on it alone.
+        installed. ``tls://`` uses the keys of Dask's configuration (``distributed.comm.tls``). The
+        cluster runs code and sends pickles, so it must be trusted. None uses processes of this
+        machine, which listen only on the loopback address.
     workers
-        Number of these processes; as many as there are cores, or tasks if these are fewer, if None.
+        Number of these processes; None for the smaller of the numbers of cores and tasks.
+    scheduler_timeout_s
+        Timeout of the answer of ``scheduler``, s.
 
     Yields
     ------
@@ -75,13 +78,17 @@ def run_tasks(
     Raises
     ------
     TrawlError
-        If the cluster does not answer, or a task fails; names the task.
+        If the cluster does not answer, or a task fails; the error names the task.
     """
     if not tasks:
         return
-    with config.set(QUIET), _client(scheduler, workers or min(cores(), len(tasks))) as client:
+    with config.set(DASK_OPTIONS), ExitStack() as stack:
+        if scheduler is None:
+            client = _of_this_machine(workers or min(cores(), len(tasks)), stack)
+        else:
+            client = stack.enter_context(_connected(scheduler, scheduler_timeout_s))
         names = {
-            # Dask would take two calls with equal arguments for one.
+            # pure=False, because Dask would merge two calls with equal arguments.
             client.submit(_outcome, function, task, pure=False): name
             for name, task in tasks.items()
         }
@@ -93,13 +100,13 @@ def run_tasks(
 
 
 def cores() -> int:
-    """Number of cores this process may use."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, 'sched_getaffinity') else os.cpu_count() or 1
 
 
 @dataclass(frozen=True)
 class _Fault:
-    """Error of a task as a sentence, which can always be sent."""
+    """Error of a task as a sentence, which can always be pickled."""
 
     sentence: str
 
@@ -108,7 +115,7 @@ def _outcome(function: Callable[[TaskT], ResultT], task: TaskT) -> ResultT | _Fa
     try:
         return function(task)
     except Exception as reason:
-        # Told whole: the traceback would otherwise stay on the worker.
+        # As a sentence, because the traceback would otherwise stay on the worker.
         return _Fault(sentence_of(reason))
 
 
@@ -118,35 +125,25 @@ def _result(name: str, future: Future[ResultT | _Fault]) -> ResultT:
     except KilledWorker as reason:
         raise TrawlError(f'{name}: the process that ran it died') from reason
     except Exception as reason:
-        # Not the task but what runs it, such as a worker without this package.
+        # A fault of the cluster, such as a worker without this package.
         raise TrawlError(f'{name}: could not be run ({reason})') from reason
     if isinstance(outcome, _Fault):
         raise TrawlError(f'{name}: {outcome.sentence}')
     return outcome
 
 
-@contextmanager
-def _client(scheduler: str | None, workers: int) -> Iterator[Client]:
-    with ExitStack() as stack:
-        if scheduler is None:
-            client = _of_this_machine(workers, stack)
-        else:
-            client = stack.enter_context(_connected(scheduler))
-        yield client
-
-
 def _of_this_machine(workers: int, stack: ExitStack) -> Client:
-    """Client of as many processes, which the stack ends."""
+    """Return the client of this many processes, which the stack stops."""
     try:
         with _interrupts_held():
-            # Keys made for this cluster alone: who else works on this machine cannot join.
+            # security=True makes temporary keys, so other users of this machine cannot join.
             cluster = LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
                 processes=True,
                 host=THIS_MACHINE,
                 security=True,
-                # No dashboard, but what is left of its server would listen to all.
+                # Without a dashboard, the rest of its server would still listen on all addresses.
                 dashboard_address=f'{THIS_MACHINE}:0',
                 worker_dashboard_address=None,
                 scheduler_kwargs={'dashboard': False},
@@ -156,29 +153,29 @@ def _of_this_machine(workers: int, stack: ExitStack) -> Client:
             stack.enter_context(cluster)
         client: Client = stack.enter_context(Client(cluster, set_as_default=False))
     except (OSError, RuntimeError) as reason:
-        # Dask tells of its own timeouts by either.
+        # Dask raises either for its own timeouts.
         raise TrawlError(
-            f'the {workers} processes for it did not start ({_first_line(reason)}); each has '
-            f'{START_S:g} s, so is this machine busy with other work?'
+            f'the {workers} processes for the work did not start ({_first_line(reason)}), '
+            f'expected a start within {START_TIMEOUT_S:g} s; check whether this machine is busy'
         ) from reason
     return client
 
 
-def _connected(address: str) -> Client:
+def _connected(address: str, timeout_s: float) -> Client:
     keys = _keys(address)
     log = logging.getLogger('distributed')
     before = log.level
     try:
         log.setLevel(logging.CRITICAL + 1)
-        # Dask's client tries for much longer, and waits for ever for one that says nothing.
-        asyncio.run(asyncio.wait_for(_shake_hands(address, keys), PATIENCE_S + 1.0))
-        return Client(address, timeout=PATIENCE_S, set_as_default=False)
+        # First a handshake with a timeout: Dask's client would wait forever for a silent server.
+        handshake = _shake_hands(address, keys, timeout_s)
+        asyncio.run(asyncio.wait_for(handshake, timeout_s + 1.0))
+        return Client(address, timeout=timeout_s, set_as_default=False)
     except Exception as reason:
-        # Errors of Dask here are of many kinds; none of them is this program's fault.
+        # Dask raises errors of many types here; none is an error of this program.
         raise TrawlError(
-            f'{address}: no Dask scheduler answers there ({_first_line(reason)}), expected an '
-            'address such as tcp://10.0.0.5:8786, or tls:// with the keys that Dask is configured '
-            'with'
+            f'{address}: no Dask scheduler answers ({_first_line(reason)}), expected an address '
+            'such as tcp://10.0.0.5:8786, or tls:// with the keys of the configuration of Dask'
         ) from reason
     finally:
         log.setLevel(before)
@@ -189,7 +186,7 @@ def _first_line(reason: Exception) -> str:
 
 
 def _keys(address: str) -> dict[str, object]:
-    """Arguments of a connection with the keys of Dask's configuration, if there are any."""
+    """Return arguments of a connection with the keys of Dask's configuration, if any."""
     try:
         keys: dict[str, object] = Security().get_connection_args('client')
     except (OSError, ValueError) as reason:
@@ -200,21 +197,23 @@ def _keys(address: str) -> dict[str, object]:
             f'{", ".join(map(str, files))}, expected PEM files under {TLS_KEYS}'
         ) from reason
     if address.startswith('tls://') and keys.get('ssl_context') is None:
-        raise TrawlError(f'{address}: no keys for tls are configured, expected {TLS_KEYS}')
+        raise TrawlError(
+            f'{address}: found no TLS keys in the configuration of Dask, expected {TLS_KEYS}'
+        )
     return keys
 
 
-async def _shake_hands(address: str, keys: dict[str, object]) -> None:
-    (await connect(address, timeout=PATIENCE_S, **keys)).abort()
+async def _shake_hands(address: str, keys: dict[str, object], timeout_s: float) -> None:
+    (await connect(address, timeout=timeout_s, **keys)).abort()
 
 
 @contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """Hold Ctrl-C back; processes that are started meanwhile never hear of it.
+    """Block Ctrl-C; processes that are started meanwhile never receive it.
 
-    It is sent to all processes of a terminal at once, but workers are ended by who started them.
+    A terminal sends it to all processes at once, but workers must be stopped by their parent.
     """
-    # Whichever thread starts this process of multiprocessing's hears signals again.
+    # Start this helper process first: starting it later would unblock signals.
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:

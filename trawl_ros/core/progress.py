@@ -1,4 +1,4 @@
-"""Progress of long work, as records that a callback is given."""
+"""Progress of long work, as records for a callback."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,18 +7,18 @@ from itertools import count
 
 @dataclass(frozen=True)
 class WorkProgress:
-    """A moment of a long piece of work.
+    """Progress of a long piece of work at one moment.
 
     Attributes
     ----------
     stage
-        Of the work, in a word or two: ``'towing'``.
+        Stage of the work in a few words, such as ``'towing'``.
     done, total
-        Amount of this stage that is done, and in all; None where that is not known.
+        Amount of this stage that is done, and total amount; None if it is unknown.
     unit
-        Of both: ``'s'`` for simulated or recorded time, or a noun such as ``'bags'``.
+        Unit of both: ``'s'`` for simulated or recorded time, or a noun such as ``'bags'``.
     detail
-        A few words more, such as the step of a scenario.
+        Further words, such as the step of a scenario.
 
     Examples
     --------
@@ -37,15 +37,15 @@ class WorkProgress:
 
 
 OnProgress = Callable[[WorkProgress], None]
-"""A callback for progress. It may raise: the work then ends as if it were interrupted."""
+"""Callback for progress. An exception that it raises stops the work like an interruption."""
 
 
 def ignore(progress: WorkProgress) -> None:
-    """Take no notice of progress."""
+    """Ignore the progress."""
 
 
 def step_counter(stage: str, total: int, on_progress: OnProgress) -> Callable[[], None]:
-    """Make a function that reports one more step of a stage as done; report that none is yet."""
+    """Return a function that reports one more step of a stage; report zero steps first."""
     numbers = count()
 
     def step() -> None:

@@ -11,17 +11,17 @@ class Quantity(Record):
     unit: str
 
     def si(self) -> float:
-        """Give the value in SI units."""
+        """Return the value in SI units."""
         return self.value * UNITS[self.unit].size
 
 
 def in_si(quantity: Quantity | None) -> float:
-    """Value of a quantity in SI units; 0 of one that is not given."""
+    """Return a quantity in SI units, or 0 if it is not given."""
     return 0.0 if quantity is None else quantity.si()
 
 
 def check_quantity(key: str, quantity: Quantity, wanted: str) -> None:
-    """Refuse a quantity of another kind than wanted, or below zero.
+    """Refuse a quantity of another kind than wanted, or a negative one.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def check_quantity(key: str, quantity: Quantity, wanted: str) -> None:
 
 
 def check_unit(key: str, unit: str, quantity: str) -> None:
-    """Refuse a unit of another quantity, and one that there is not.
+    """Refuse a unit of another quantity, or an unknown unit.
 
     Raises
     ------

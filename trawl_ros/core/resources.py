@@ -1,4 +1,4 @@
-"""Look-up of files: as a user names them, or as they come with the package."""
+"""Look-up of files, by path or by name in the package."""
 
 import difflib
 from pathlib import Path
@@ -9,11 +9,11 @@ PACKAGE = 'trawl_ros'
 
 
 def share_path(*parts: str) -> Path:
-    """Find a file or folder that comes with the package.
+    """Find a file or folder of the package.
 
-    The data of the very copy of the package that runs are preferred: those beside it in a source
-    checkout (or editable install), then those in the prefix where it is installed, and only then
-    those that the ament index names.
+    The data of the running copy of the package take precedence: first those of its source checkout
+    (or editable install), then those in the prefix where it is installed, then those of the ament
+    index.
 
     Parameters
     ----------
@@ -24,34 +24,33 @@ def share_path(*parts: str) -> Path:
     Returns
     -------
     Path
-        Absolute path of something that exists.
+        Absolute path that exists.
 
     Raises
     ------
     TrawlError
-        If the package's data are not installed, or hold nothing of this name.
-
+        If the data of the package are not installed, or contain nothing of this name.
     """
     module = Path(__file__).resolve()
     folder = _beside(module) or _in_prefix_of(module) or _in_ament_index()
     if folder is None:
         raise TrawlError(
-            f'the data of {PACKAGE} (config/ and bags/) are missing: expected them beside the '
-            f'package in a source checkout, or in share/{PACKAGE} of the prefix that holds {module}'
+            f'the data of {PACKAGE} (config/ and bags/) are missing, expected in the source '
+            f'checkout of the package, or in share/{PACKAGE} of the prefix of {module}'
         )
     path = folder.joinpath(*parts)
     if not path.exists():
-        raise TrawlError(f'{path}: {PACKAGE} comes with no such file or folder{_siblings(path)}')
+        raise TrawlError(f'{path}: {PACKAGE} has no such file or folder{_siblings(path)}')
     return path
 
 
 def packaged(path: str | Path, folder: str, error: type[TrawlError] = TrawlError) -> Path:
-    """Find a YAML file: as given, or by its bare name in ``config/<folder>``.
+    """Find a YAML file by path, or by its name in ``config/<folder>``.
 
     Raises
     ------
     TrawlError
-        Of the type ``error``, if a bare name is not one of those that come with the package.
+        Of the type ``error``, if a name is not one of the package.
     """
     path = Path(path)
     if path.suffix in ('.yaml', '.yml') or path.is_file() or len(path.parts) != 1:
@@ -63,13 +62,13 @@ def packaged(path: str | Path, folder: str, error: type[TrawlError] = TrawlError
 
 
 def _beside(module: Path) -> Path | None:
-    """Folder of the source checkout that `module` is part of."""
+    """Return the source checkout that contains `module`."""
     checkout = module.parents[2]
     return checkout if (checkout / 'package.xml').is_file() else None
 
 
 def _in_prefix_of(module: Path) -> Path | None:
-    """Share folder of the prefix (workspace, virtual environment, /usr) that has `module`."""
+    """Return the share folder of the prefix (workspace, virtual environment, /usr) of `module`."""
     for prefix in module.parents[2:]:
         share = prefix / 'share' / PACKAGE
         if (share / 'package.xml').is_file():
@@ -78,19 +77,19 @@ def _in_prefix_of(module: Path) -> Path | None:
 
 
 def _in_ament_index() -> Path | None:
-    """Share folder that ROS 2 knows, for layouts that keep Python and data in two prefixes."""
+    """Return the share folder by ROS 2, for layouts with Python and data in two prefixes."""
     try:
         from ament_index_python.packages import get_package_share_directory
     except ImportError:
         return None
     try:
         return Path(get_package_share_directory(PACKAGE))
-    except (LookupError, OSError):  # no such package in the index, or no index at all
+    except (LookupError, OSError):  # not in the index, or no index
         return None
 
 
 def _siblings(path: Path) -> str:
-    """Names a user may have meant instead of `path`."""
+    """Suggest names that the user may have meant instead of `path`."""
     if not path.parent.is_dir():
         return ''
     names = sorted(entry.name for entry in path.parent.iterdir() if not entry.name.startswith('.'))

@@ -1,8 +1,7 @@
-"""YAML files with strict checks on load, as records.
+"""Records from YAML files, with strict checks.
 
-Gear, scenario and instrument files all pass through here, so that each of them refuses the
-same mistakes in the same words: every complaint names the file, the key, what was found
-there and what was expected.
+Gear, scenario and instrument files all use it, so they refuse the same mistakes in the same words.
+Every error names the file, the key, what was found and what was expected.
 """
 
 import math
@@ -23,17 +22,17 @@ MAX_COMPLAINTS = 10
 
 
 class Record(BaseModel):
-    """A record that comes from a file.
+    """Record from a file.
 
-    It cannot be changed, takes no unknown keys, no NaN or infinity, and no value of another
-    kind in disguise: neither ``true`` nor ``'3'`` is a number. Sequences are tuples.
+    It is immutable, and refuses unknown keys, NaN, infinity and values of another type: neither
+    ``true`` nor ``'3'`` is a number. Sequences are tuples.
     """
 
     model_config = ConfigDict(frozen=True, extra='forbid', strict=True, allow_inf_nan=False)
 
 
 class FrozenDict(dict[str, float]):
-    """Numbers by name that cannot be changed, so that a record that holds them can be hashed."""
+    """Immutable numbers by name, so that a record with them can be hashed."""
 
     def __hash__(self) -> int:  # type: ignore[override]
         return hash(frozenset(self.items()))
@@ -74,7 +73,7 @@ def load_yaml(path: str | Path, error: type[TrawlError]) -> dict[str, object]:
     ------
     TrawlError
         Of class ``error``: the file is missing, unreadable, too large, not YAML or not a
-        mapping; a key stands twice or is not text; an alias or a tag is used.
+        mapping; a key occurs twice or is not text; an alias or a tag is used.
     """
     path = Path(path)
     if not path.exists():
@@ -112,16 +111,16 @@ def validated(
     *,
     prefix: str = '',
 ) -> RecordT:
-    """Turn what a file says into a record.
+    """Convert the content of a file to a record.
 
     Parameters
     ----------
     cls
-        The record's class, a `Record` as a rule.
+        Class of the record, usually a `Record`.
     data
-        Result of `load_yaml`, or a part of it. Lists are handed on as tuples.
+        Result of `load_yaml`, or a part of it. Lists become tuples.
     path
-        Named in the error.
+        Path for the error.
     error
         Class of the error to raise.
     prefix
@@ -130,7 +129,7 @@ def validated(
     Raises
     ------
     TrawlError
-        Of class ``error``, one line per complaint, each with file, key, found and expected.
+        Of class ``error``, one line per fault, each with file, key, found and expected.
     """
     data = _with_tuples(data)
     try:
@@ -138,7 +137,7 @@ def validated(
     except ValidationError as reason:
         lines = validation_messages(cls, data, reason.errors(include_url=False), prefix)
         more = len(lines) - MAX_COMPLAINTS
-        # A value of the file may stand in it whole.
+        # A line may contain a whole value of the file.
         messages = [f'{path}: {one_line(line, DIAGNOSIS.value)}' for line in lines[:MAX_COMPLAINTS]]
         if more > 0:
             messages.append(f'{path}: and {more} more like these')
@@ -146,11 +145,11 @@ def validated(
 
 
 CONTROL = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]')
-"""Characters that a terminal obeys, or that turn the order of others round, and half ones."""
+"""Control characters of a terminal or of the text direction, and single surrogates."""
 
 
 class _Loader(yaml.SafeLoader):
-    """SafeLoader with the scalars of YAML 1.2; no aliases or tags, no key twice, all bounded."""
+    """SafeLoader with YAML 1.2 scalars and limits, without aliases, tags and double keys."""
 
     _depth = 0
     _values = 0
@@ -162,7 +161,7 @@ class _Loader(yaml.SafeLoader):
             # A few lines of aliases can stand for billions of values.
             self._refuse(mark, 'an alias (*), expected the value itself')
         if getattr(event, 'tag', None) is not None:
-            # `!!int abc` makes constructors fail in ways of their own.
+            # `!!int abc` would make constructors fail in unexpected ways.
             self._refuse(mark, f'a tag ({event.tag}), expected the value itself')
         if isinstance(event, yaml.ScalarEvent) and CONTROL.search(event.value):
             self._refuse(mark, 'a control character or half a character, expected text')
@@ -171,7 +170,7 @@ class _Loader(yaml.SafeLoader):
         if self._depth > YAML_DEPTH.value:
             self._refuse(mark, f'nesting, expected {YAML_DEPTH} at most')
         if self._values > YAML_VALUES.value:
-            self._refuse(mark, f'one value more, expected {YAML_VALUES} at most')
+            self._refuse(mark, f'one more value, expected {YAML_VALUES} at most')
         node = super().compose_node(parent, index)
         self._depth -= 1
         return node
@@ -194,7 +193,7 @@ class _Loader(yaml.SafeLoader):
     def construct_yaml_float(self, node: yaml.ScalarNode) -> float:
         value = super().construct_yaml_float(node)
         if YAML_NUMBER.value < abs(value) < math.inf:
-            # Its powers and products would leave the range of what can be computed with.
+            # Its powers and products would overflow.
             found = f'{node.value}, expected a number of magnitude {YAML_NUMBER.value:.0e} at most'
             self._refuse(node.start_mark, found)
         return value
@@ -203,7 +202,7 @@ class _Loader(yaml.SafeLoader):
         raise yaml.constructor.ConstructorError(None, None, f'found {found}', mark)
 
 
-# Own table: YAML 1.1 reads 1e5 as text, 12:30 as 750 and `no` as false.
+# Own table, because YAML 1.1 reads 1e5 as text, 12:30 as 750 and `no` as false.
 _Loader.yaml_implicit_resolvers = {}
 for _tag, _pattern, _first in (
     ('bool', r'^(?:true|True|TRUE|false|False|FALSE)$', 'tTfF'),

@@ -1,9 +1,9 @@
-"""Judgement of times: which stamp can be when something was measured, and which cannot.
+"""Validation of stamps: which stamp can be the time of a measurement, and which cannot.
 
-Times are ns since 1970-01-01 UTC. A simulation counts from zero, so a stamp within the first year
-can be one. What was measured lies between 1990 and tomorrow. Receivers without a fix, loggers
-without a battery and drivers that never stamp write other times; so do a week that rolls over
-(1024 weeks) and a date that changes a second late.
+Times are ns since 1970-01-01 UTC. A simulation counts from zero, so stamps within the first year
+are valid. Measurements lie between 1990 and tomorrow. Other times come from receivers without a
+fix, loggers without a battery, drivers that never stamp, a GPS week rollover (1024 weeks), and a
+date that changes a second late.
 """
 
 from collections import Counter
@@ -30,36 +30,36 @@ SIMULATED_UNTIL = 365 * DAY_NS
 """Stamps (ns) below this may be of a simulation, which counts from zero."""
 
 EARLIEST_NS = 631_152_000 * SECOND
-"""1990-01-01 (ns): no log of sentences or bag is older."""
+"""1990-01-01: no log of sentences or bag is older."""
 
 MARGIN_NS = DAY_NS
-"""A stamp may be ahead of this machine's clock by this much: clocks and time zones differ."""
+"""Largest advance of a stamp over the clock of this machine: clocks and time zones differ."""
 
 BAG_APART_NS = 30 * DAY_NS
-"""Longest pause (ns) in one recording."""
+"""Longest pause in one recording."""
 
 LOG_APART_NS = 730 * DAY_NS
-"""Longest pause (ns) in one log: a log book may hold two seasons."""
+"""Longest pause in one log: a log book may contain two seasons."""
 
 FAR_NS = 60 * SECOND
-"""Stamps further than this from the last on their topic may be false; a slow topic's are not."""
+"""Difference from the last stamp of a topic from which a stamp may be false."""
 
 CONFIRMING_READINGS = 3
-"""Stamps in a row that make a leap credible."""
+"""Number of consecutive stamps that confirm a leap."""
 
 UNSTAMPED = '0, as of a driver that never stamps'
 FUTURE = 'in the future, by the clock of this machine'
 ELSEWHERE = 'far from the rest'
 EXCURSION = 'of another hour or day than those before and behind'
-MOST_LEAPS = 10
-"""Leaps from which on stamps are in no order, unless they are many."""
+MAX_LEAPS = 10
+"""Number of leaps above which few stamps are in no order; many stamps may have a 50th."""
 
-FEWEST_UNSTAMPED = 3
-"""Stamps of 0 that no simulation gives, where it gives no others."""
+MIN_UNSTAMPED = 3
+"""Number of zero stamps, without any others, that cannot come from a simulation."""
 
 
 def when(stamp: int) -> str:
-    """Give a stamp (ns) as date and time, UTC; as a number of seconds where no date has it."""
+    """Format a stamp (ns) as UTC date and time, or in seconds if it is no valid date."""
     try:
         time = datetime(1970, 1, 1) + timedelta(microseconds=stamp // 1000)
     except OverflowError:
@@ -68,7 +68,7 @@ def when(stamp: int) -> str:
 
 
 def lasting(ns: int) -> str:
-    """Give a time span (ns) in the unit that suits it."""
+    """Format a time span (ns) in a suitable unit."""
     seconds = abs(ns) / SECOND
     for size, unit in ((365.25 * 86_400, 'years'), (86_400, 'days'), (3600, 'h'), (60, 'min')):
         if seconds >= 2 * size:
@@ -77,7 +77,7 @@ def lasting(ns: int) -> str:
 
 
 def impossible_time(stamp: int, now: int | None = None) -> str | None:
-    """Say why nothing can have been measured at a stamp (ns); None where it can.
+    """Return why a stamp (ns) cannot be the time of a measurement; None if it can.
 
     Parameters
     ----------
@@ -97,11 +97,11 @@ def impossible_time(stamp: int, now: int | None = None) -> str | None:
 
 @dataclass(frozen=True)
 class StampJudgement:
-    """Judgement of the stamps of one recording.
+    """Validation of the stamps of one recording.
 
-    ``false`` (n,) marks those that cannot be, ``reasons`` counts them. ``span`` is the first and
-    last (ns) of the others, None without any. ``set_back`` are steps back among those, each with
-    the stamps (ns) before and behind it.
+    ``false`` (n,) marks invalid stamps and ``reasons`` counts them. ``span`` is the first and last
+    valid stamp (ns), None without any. ``set_back`` are backward steps of the clock, each with the
+    stamps (ns) before and after it.
     """
 
     false: BoolArray
@@ -110,18 +110,18 @@ class StampJudgement:
     set_back: tuple[tuple[int, int], ...] = ()
 
     def sentences(self) -> list[str]:
-        """Say what was found, one sentence for each reason."""
+        """Describe the findings, one sentence for each reason."""
         usual = f'; the others are of {when(self.span[0])}' if self.span else ''
         found = [f'{count} stamps are {why}{usual}' for why, count in self.reasons.items()]
-        for before, behind in self.set_back:
-            found.append(f'the clock was set back by {lasting(before - behind)} at {when(before)}')
+        for before, after in self.set_back:
+            found.append(f'the clock was set back by {lasting(before - after)} at {when(before)}')
         return found
 
 
 def judge_stamps(
     stamps: StampArray, *, apart_ns: int = BAG_APART_NS, in_order: bool = False
 ) -> StampJudgement:
-    """Judge the stamps (n,) of one recording by what can be, and by the most of them.
+    """Validate the stamps (n,) of one recording, by possible times and by the majority.
 
     Parameters
     ----------
@@ -130,8 +130,8 @@ def judge_stamps(
     apart_ns
         Longest pause between them.
     in_order
-        True if they stand in the order in which they were written: then some that leap away and
-        back again are false too.
+        True if they are in the order of writing. Short runs that leap away and back are then false
+        too.
     """
     false = np.zeros(len(stamps), dtype=bool)
     reasons: Counter[str] = Counter()
@@ -148,22 +148,22 @@ def judge_stamps(
 
 
 def _by_era(stamps: StampArray, apart_ns: int) -> list[tuple[StampArray, str, bool]]:
-    """Split stamps at long pauses; give places, what is wrong or '', and if it is the recording.
+    """Split stamps at long pauses; return indices, fault or '', and True for the recording.
 
-    The part with most stamps that can be is the recording. Where none can be, nothing is right.
+    The recording is the possible part with most stamps. There is none if no part is possible.
     """
     if not len(stamps):
         return []
     order = np.argsort(stamps, kind='stable')
-    # Differences of the extremes of 64 bits do not fit into 64 bits.
+    # As floats, because differences of extreme 64-bit numbers overflow.
     pauses = np.diff(stamps[order].astype(float))
     parts = np.split(order, np.flatnonzero(pauses > apart_ns) + 1)
     judged = []
     for part in parts:
         first, last = int(stamps[part[0]]), int(stamps[part[-1]])
-        unstamped = last == 0 == first and (len(parts) > 1 or len(part) >= FEWEST_UNSTAMPED)
+        unstamped = last == 0 == first and (len(parts) > 1 or len(part) >= MIN_UNSTAMPED)
         judged.append((part, UNSTAMPED if unstamped else impossible_time(last) or ''))
-    # Where all is in the future, the clock of this machine may be wrong.
+    # If all stamps are in the future, the clock of this machine may be wrong.
     possible = [part for part, why in judged if why in ('', FUTURE)]
     possible = [part for part, why in judged if not why] or possible
     usual = max(possible, key=len) if possible else None
@@ -175,12 +175,12 @@ def _by_era(stamps: StampArray, apart_ns: int) -> list[tuple[StampArray, str, bo
 def _excursions(stamps: StampArray) -> BoolArray:
     """Mark runs of stamps (n,) that leap by more than `FAR_NS` and back again.
 
-    Of three runs the middle one is an excursion if it is shorter than both and the third goes on
-    where the first ended. Where many leap, stamps are in no order, and none is marked.
+    Of three runs the middle one is an excursion if it is shorter than both others and the third
+    continues the first. With too many leaps the stamps are in no order, and none is marked.
     """
     away = np.zeros(len(stamps), dtype=bool)
     leaps = np.flatnonzero(abs(np.diff(stamps)) > FAR_NS) + 1
-    if not 2 <= len(leaps) <= max(MOST_LEAPS, len(stamps) // 50):
+    if not 2 <= len(leaps) <= max(MAX_LEAPS, len(stamps) // 50):
         return away
     bounds = [0, *leaps.tolist(), len(stamps)]
     runs = list(pairwise(bounds))
@@ -199,20 +199,20 @@ def _excursions(stamps: StampArray) -> BoolArray:
 
 
 def _set_back(stamps: StampArray) -> tuple[tuple[int, int], ...]:
-    """Give the steps back by more than `FAR_NS`; none where stamps are in no order."""
+    """Return the backward steps of more than `FAR_NS`; none if stamps are in no order."""
     places = np.flatnonzero(np.diff(stamps) < -FAR_NS)
-    if len(places) > max(MOST_LEAPS, len(stamps) // 50):
+    if len(places) > max(MAX_LEAPS, len(stamps) // 50):
         return ()
     return tuple((int(stamps[place]), int(stamps[place + 1])) for place in places)
 
 
 class Leaps(Generic[MessageT]):
-    """Filter of leaping stamps: holds back messages until enough agree.
+    """Filter of leaping stamps, which holds back messages until enough stamps agree.
 
     Parameters
     ----------
     far_ns
-        Largest difference of stamps that is not far, ns.
+        Largest difference of agreeing stamps, ns.
     """
 
     def __init__(self, far_ns: int = FAR_NS) -> None:
@@ -226,9 +226,9 @@ class Leaps(Generic[MessageT]):
         Returns
         -------
         list
-            The messages that can be used now, in the order in which they came.
+            Messages that can be used now, in order of arrival.
         list
-            Those held back that turned out to be stamped falsely.
+            Held messages that turned out to have false stamps.
         """
         held, self._held = self._held, []
         if self._newest is None or abs(stamp - self._newest) <= self._far:
@@ -244,6 +244,6 @@ class Leaps(Generic[MessageT]):
         return messages, false
 
     def give_up(self) -> list[MessageT]:
-        """Give the messages that are held back, which nothing has confirmed."""
+        """Return the held messages, which no other stamp has confirmed."""
         held, self._held = self._held, []
         return [message for _, message in held]

@@ -57,9 +57,11 @@ UNITS: Mapping[str, Unit] = MappingProxyType(
         'deg/min': Unit('rate of turn', math.pi / 180 / 60, 'degrees per minute'),
     }
 )
-"""Units by symbol. ``kn`` is the knot, ``kN`` the kilonewton, ``tf`` the metric
-ton-force (``short_tf`` of 2000 lb, ``long_tf`` of 2240 lb), ``fathom`` the international one,
-``deg_min`` degrees and minutes as charts have them, whose value here is in degrees."""
+"""Units by symbol.
+
+``kn`` is the knot, ``kN`` the kilonewton, ``tf`` the metric ton-force (``short_tf`` of 2000 lb,
+``long_tf`` of 2240 lb), and ``fathom`` the international fathom. ``deg_min`` is written in degrees
+and minutes, as on charts; its value is in degrees."""
 
 
 def units_of(quantity: str) -> list[str]:

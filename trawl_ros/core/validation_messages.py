@@ -1,7 +1,7 @@
 """Validation messages: one sentence for each fault of a record.
 
-Pydantic says what it found in terms of Python; here it is said in terms of the file: the key
-as it stands there, what was found, what was expected, in which unit.
+Pydantic describes faults in terms of Python. These messages use the terms of the file: its key,
+what was found, what was expected, and the unit.
 """
 
 import difflib
@@ -42,11 +42,11 @@ KEY_UNITS = {
     'n_m': 'newton metres',
     'n_m2': 'newtons per square metre',
 }
-"""Units by the last words of a key."""
+"""Names of units by the last words of a key."""
 
 
 def key_unit(key: str) -> str | None:
-    """Name the unit that the end of a key states: ``'length_m'`` gives ``'metres'``."""
+    """Return the unit named by the end of a key: ``'length_m'`` gives ``'metres'``."""
     words = key.split('_')
     for start in range(1, len(words)):
         unit = KEY_UNITS.get('_'.join(words[start:]))
@@ -66,7 +66,7 @@ _SCALARS = {
 
 
 def _is_consequence(detail: ErrorDetails, errors: list[ErrorDetails]) -> bool:
-    """True for a list that is too short only because entries of it are wrong."""
+    """Return True for a list that is too short only because of wrong entries."""
     place = detail['loc']
     return detail['type'] == 'too_short' and any(
         len(other['loc']) > len(place) and other['loc'][: len(place)] == place for other in errors
@@ -81,7 +81,7 @@ def validation_messages(
     Parameters
     ----------
     cls
-        The record that was wanted.
+        Class of the expected record.
     data
         Content of the file; mappings and tuples.
     errors
@@ -92,7 +92,7 @@ def validation_messages(
     Returns
     -------
     list of str
-        One sentence per key. A missing key is left out where a look-alike of it was found.
+        One sentence per key. A missing key is left out if a similar unknown key was found.
     """
     lines: list[str] = []
     explained: set[str] = set()
@@ -110,7 +110,7 @@ def validation_messages(
             continue
         if kind == 'value_error':
             message = detail['msg'].removeprefix('Value error, ')
-            # A record's own check starts with the key below the record that it is about.
+            # The message of a record's own check begins with the key below the record.
             own = not key or _OWN_KEY.match(message)
             lines.append(_join(key, message) if own else f'{key}: {message}')
         elif not _other_branch(detail, errors):
@@ -137,7 +137,7 @@ def shown(value: object) -> str:
 def _unknown_key(
     cls: type[BaseModel], data: object, loc: tuple[int | str, ...], prefix: str
 ) -> tuple[str, str]:
-    """Message on an unknown key; with the key that was probably meant, or ''."""
+    """Return the message on an unknown key, and the key that was probably meant, or ''."""
     unknown = str(loc[-1])
     key = _key(data, loc, prefix)
     owners = _records(_annotation(cls, loc[:-1]))
@@ -151,7 +151,7 @@ def _unknown_key(
 
 
 def _other_branch(detail: ErrorDetails, errors: list[ErrorDetails]) -> bool:
-    """True if a section is refused as text or number only because a union allows both."""
+    """Return True if a section is refused as text or number only because of a union."""
     loc = detail['loc']
     return (
         isinstance(detail['input'], dict)
@@ -161,7 +161,7 @@ def _other_branch(detail: ErrorDetails, errors: list[ErrorDetails]) -> bool:
 
 
 def _key(data: object, loc: tuple[int | str, ...], prefix: str) -> str:
-    """Format a location as the file's own key; the branches of a union are no part of it."""
+    """Format a location as the key of the file, without the branches of unions."""
     text = prefix
     for number, step in enumerate(loc):
         if isinstance(step, int) and isinstance(data, tuple):
@@ -178,7 +178,7 @@ def _join(where: str, key: str) -> str:
 
 
 def _annotation(cls: object, loc: tuple[int | str, ...]) -> object:
-    """Follow a location through the record's annotations; None where it leads nowhere."""
+    """Follow a location through the record's annotations; None if it leads nowhere."""
     here = cls
     for step in loc:
         records = [r for r in _records(here) if isinstance(step, str) and step in r.model_fields]
@@ -195,7 +195,7 @@ def _annotation(cls: object, loc: tuple[int | str, ...]) -> object:
 
 
 def _parts(annotation: object) -> list[object]:
-    """Unwrap a field, `Annotated` and unions into the plain annotations they allow."""
+    """Unwrap a field, `Annotated` and unions to the plain annotations that they allow."""
     if isinstance(annotation, FieldInfo):
         return _parts(annotation.annotation)
     origin = get_origin(annotation)
@@ -254,7 +254,7 @@ def _expected(detail: ErrorDetails, annotation: object) -> str:
 
 
 def _closest(unknown: str, known: list[str]) -> str | None:
-    """Find the key that was meant: same quantity in another unit first, then a misspelling."""
+    """Find the intended key: the same quantity in another unit, then a misspelling."""
     stems = {unknown, _without_unit(unknown), unknown.rsplit('_', 1)[0]}
     same = [name for name in known if key_unit(name) and _without_unit(name) in stems]
     close = same or difflib.get_close_matches(unknown, known, n=1, cutoff=0.6)

@@ -1,1 +1,1 @@
-"""The kit of reports: templates, pictures, and the style of figures."""
+"""Common parts of reports: templates, pictures, and the style of figures."""

@@ -1,4 +1,4 @@
-"""Pictures of a report: drawn into its folder, and embedded into its page."""
+"""Pictures of a report: written to its folder, and embedded in its page."""
 
 import base64
 from collections.abc import Iterable
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Drawing:
-    """Figure to be drawn.
+    """Figure of a report.
 
     Attributes
     ----------
     name
-        Of its file, without the ending.
+        Name of its file, without the suffix.
     caption
         A sentence or two.
     figure
         The figure.
     section
-        Heading it stands under; '' for none.
+        Heading above it; '' for none.
     """
 
     name: str
@@ -50,16 +50,16 @@ def draw(folder: Path, drawings: Iterable[Drawing], prefix: str = '') -> tuple[P
     Parameters
     ----------
     folder
-        Of the page; made if it does not exist.
+        Folder of the page; made if it does not exist.
     drawings
         The figures.
     prefix
-        Stands before the names, such as ``'figures/case_'``.
+        Prefix of the names, such as ``'figures/case_'``.
 
     Raises
     ------
     TrawlError
-        If one cannot be written.
+        If a figure cannot be written.
     """
     pictures = []
     for drawing in drawings:
@@ -72,7 +72,7 @@ def draw(folder: Path, drawings: Iterable[Drawing], prefix: str = '') -> tuple[P
 
 
 def embedded(folder: Path, pictures: Iterable[Picture]) -> tuple[Picture, ...]:
-    """Embed PNG files of a folder as text, for a page that needs nothing beside it."""
+    """Embed PNG files of a folder as text, for a self-contained page."""
     return tuple(
         replace(picture, file=f'data:image/png;base64,{_base64(folder / picture.file)}')
         for picture in pictures
@@ -84,7 +84,7 @@ def _base64(file: Path) -> str:
 
 
 def by_section(pictures: Iterable[Picture]) -> dict[str, list[Picture]]:
-    """Group pictures by their heading, in the order in which these first come."""
+    """Group pictures by heading, in the order of first occurrence."""
     sections: dict[str, list[Picture]] = {}
     for picture in pictures:
         sections.setdefault(picture.section, []).append(picture)

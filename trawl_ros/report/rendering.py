@@ -12,7 +12,7 @@ DPI = 110
 def _templates(package: str) -> Environment:
     environment = Environment(
         loader=ChoiceLoader([PackageLoader(package), PackageLoader('trawl_ros.report')]),
-        # Their names end with .j2, which jinja would take for text.
+        # Names end in .j2, which jinja would treat as plain text.
         autoescape=select_autoescape(['html.j2']),
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -23,16 +23,16 @@ def _templates(package: str) -> Environment:
 
 
 def page(package: str, name: str, /, **content: object) -> str:
-    """Fill in the template ``<name>.j2`` of a package, which may use those of this one.
+    """Fill in the template ``<name>.j2`` of a package, which may include those of this one.
 
-    On HTML pages all that is filled in is escaped. In Markdown what others named, such as a gear,
-    goes through the filter `foreign`.
+    Content of HTML pages is escaped. In Markdown, foreign names such as that of a gear need the
+    filter `foreign`.
     """
     return _templates(package).get_template(f'{name}.j2').render(content)
 
 
 def number(value: float) -> str:
-    """Format a figure with the digits that one reads."""
+    """Format a figure with four digits."""
     if value != value:
         return 'not measured'
     return f'{value:.4g}' if abs(value) < 1e4 else f'{value:.0f}'
@@ -44,5 +44,5 @@ def cell(text: str) -> str:
 
 
 def foreign(text: str) -> str:
-    """Escape foreign text in Markdown: shown as it is, and nothing more."""
+    """Escape foreign text in Markdown, so that it is shown literally."""
     return re.sub(r'([\\`*_{}\[\]<>()#|!&~])', r'\\\1', ' '.join(text.split()))

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from trawl_ros.core.arrays import FloatArray
 
 PORT, STARBOARD = '#d62728', '#2ca02c'
-"""Red and green, as the lights of a ship."""
+"""Red and green, as the side lights of a ship."""
 
 PORT_TRUTH, STARBOARD_TRUTH = '#5a0a0b', '#0b4410'
 MEASURED, SECOND = '#1f77b4', '#e08214'
@@ -16,7 +16,7 @@ DPI = 130
 
 
 def quiet(axes: Axes) -> None:
-    """Set a faint grid, and no frame on the right and above."""
+    """Set a faint grid, without a frame on the right and at the top."""
     axes.grid(color='#e3e6e8', linewidth=0.6)
     axes.set_axisbelow(True)
     axes.spines[['top', 'right']].set_visible(False)

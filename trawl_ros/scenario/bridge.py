@@ -1,4 +1,4 @@
-"""Bridge of a trial: autopilot and autotrawl, with the instruments they rely on."""
+"""Bridge of a trial: autopilot and autotrawl, with their instruments."""
 
 import math
 from dataclasses import replace
@@ -27,15 +27,15 @@ from trawl_ros.simulation.command import Command
 
 
 class Bridge:
-    """Bridge: turns the planned commands of a scenario into those of its controllers.
+    """Bridge, which replaces planned commands of a scenario by those of its controllers.
 
-    Its instruments draw as those of the instrument nodes do, so it goes by the very readings
-    that these publish, faults and all.
+    Its instruments use the same random numbers as the instrument nodes, so the controllers receive
+    the same readings, including faults.
 
     Parameters
     ----------
     scenario
-        With the steps of helm and winches.
+        Scenario with steps of autopilot and autotrawl.
     """
 
     def __init__(self, scenario: Scenario) -> None:
@@ -56,7 +56,7 @@ class Bridge:
         self._turn_rate = 0.0
 
     def observe(self, truth: Truth) -> None:
-        """Observe the truth by the instruments, and pass their samples to the controllers."""
+        """Observe the truth with the instruments, and pass their samples to the controllers."""
         self._plan.follow(truth.stamp)
         if self._scenario.steered:
             self._observe_ship(truth)

@@ -30,12 +30,12 @@ _TRAWL = AutotrawlSettings()
 
 
 class SteerRecord(Record):
-    """Target and settings of the autopilot; one of the first five keys is given.
+    """Target and settings of the autopilot; exactly one of the first five keys is required.
 
     ``heading_deg`` by compass and ``course_deg`` over ground are ENU yaw (0 = east, to port
-    positive), as everywhere. A track makes for its first waypoint and follows the legs to the
-    last: ``track_m`` in east and north of ``map``, ``track_deg`` in latitude and longitude.
-    ``to_school`` steers over the nearest school that the fish sonar sees ahead.
+    positive). A track leads to its first waypoint and along the legs to the last: ``track_m`` in
+    east and north of ``map``, ``track_deg`` in latitude and longitude. ``to_school`` steers to the
+    nearest school that the fish sonar detects ahead.
     """
 
     heading_deg: Degrees | None = None
@@ -66,8 +66,8 @@ class SteerRecord(Record):
             for number, (waypoint, next_one) in enumerate(pairwise(getattr(self, name) or ())):
                 if waypoint == next_one:
                     raise ValueError(
-                        f'{name}: found waypoint {list(waypoint)} twice in a row (number {number} '
-                        f'and {number + 1}), expected another place'
+                        f'{name}: found waypoint {list(waypoint)} twice in a row (numbers {number} '
+                        f'and {number + 1}), expected different waypoints'
                     )
         return self
 
@@ -94,11 +94,11 @@ class SteerRecord(Record):
 
 
 class AutotrawlRecord(Record):
-    """Settings of the autotrawl; ``off`` leaves the winches to the lengths of the steps.
+    """Settings of the autotrawl; with ``off`` the winches go to the lengths of the steps.
 
-    ``lengths`` holds the steps' warp lengths by the counters. ``tension`` holds both warps at
-    equal tension and gives way to peaks above ``tension_kn`` (left out: above the mean of the
-    last minutes), while the mean of both counters stays at the steps' lengths.
+    ``lengths`` holds the steps' warp lengths by the counters. ``tension`` holds both warps at equal
+    tension and gives way to peaks above ``tension_kn`` (by default the mean of the last minutes),
+    while the mean of both counters stays at the steps' lengths.
     """
 
     mode: Literal['lengths', 'tension', 'off']
@@ -113,12 +113,12 @@ class AutotrawlRecord(Record):
     def _tension_where_it_is_held(self) -> 'AutotrawlRecord':
         if self.tension_kn is not None and self.mode != 'tension':
             raise ValueError(
-                f"tension_kn: found in mode '{self.mode}', expected it in mode 'tension' alone"
+                f"tension_kn: found in mode '{self.mode}', expected only in mode 'tension'"
             )
         return self
 
     def settings(self, max_speed: float, max_acceleration: float) -> AutotrawlSettings | None:
-        """Settings with the winches' speed (m/s) and acceleration (m/s²); None for off."""
+        """Return the settings with the winches' limits (m/s, m/s²); None for off."""
         if self.mode == 'off':
             return None
         return AutotrawlSettings(

@@ -1,4 +1,4 @@
-"""Messages that a trial records: truth and what its instruments report."""
+"""Messages that a trial records: truth and the readings of its instruments."""
 
 from collections.abc import Iterator
 
@@ -13,7 +13,7 @@ from trawl_ros.scenario.run import Trial
 
 
 def recorded_messages(trial: Trial) -> Iterator[tuple[int, list[TopicMessage]]]:
-    """Tow a trial to its end; give each stamp (ns) with all messages its scenario records."""
+    """Tow a trial to its end and yield each stamp (ns) with all recorded messages."""
     scenario = trial.scenario
     suite = InstrumentSuite(
         scenario.instruments,

@@ -1,15 +1,17 @@
-"""Records of the scenario file: every key carries its unit, every value is checked on load."""
+"""Records of the scenario file: every key names its unit, and every value is checked on load."""
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
+from trawl_ros.core.errors import InstrumentError
 from trawl_ros.core.schema import Record
 from trawl_ros.gear.records import EffectRecord
 from trawl_ros.gear.sea_water import CurrentAt, TemperatureAt
+from trawl_ros.instruments.errors.fault_plan import PlannedFault
+from trawl_ros.instruments.errors.faults import parse_fault
 from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.scenario.driving import AutotrawlRecord, SteerRecord
-from trawl_ros.scenario.faults import FaultRecord
 from trawl_ros.scenario.sea import SeaRecord
 
 Length = Annotated[float, Field(ge=LIMITS.warp_m[0], le=LIMITS.warp_m[1])]
@@ -20,7 +22,7 @@ Name = Annotated[str, Field(min_length=1, max_length=100)]
 
 MAX_HOURS = 48
 MAX_TRUTH_HZ = 10.0
-"""The simulation gives truth at this rate."""
+"""Highest rate of the truth."""
 
 
 def _check_lengths(record: 'SteadyStartRecord | StepRecord', *, needed: bool) -> None:
@@ -29,7 +31,7 @@ def _check_lengths(record: 'SteadyStartRecord | StepRecord', *, needed: bool) ->
     given = sum(side is not None for side in sides)
     if both and given:
         raise ValueError(
-            'warp_length_m: found beside port_warp_length_m or starboard_warp_length_m, '
+            'warp_length_m: found together with port_warp_length_m or starboard_warp_length_m, '
             'expected either one length or one per side'
         )
     if needed and not both and given < 2:
@@ -40,7 +42,7 @@ def _check_lengths(record: 'SteadyStartRecord | StepRecord', *, needed: bool) ->
 
 
 class SteadyStartRecord(Record):
-    """The steady tow a trial starts from."""
+    """Steady tow at the start of a trial."""
 
     warp_length_m: Length | None = None
     port_warp_length_m: Length | None = None
@@ -54,10 +56,10 @@ class SteadyStartRecord(Record):
 
 
 class StepRecord(Record):
-    """Step of a trial: its minutes, and new targets for what is named.
+    """Step of a trial: its minutes, and new targets for the named quantities.
 
-    What is not named stays as it was, the rate of turn too; a rate of turn that is named ends
-    what was steered before.
+    Quantities without a new target keep their values, including the rate of turn. A rate of turn
+    ends the steering of an earlier step.
     """
 
     name: Name
@@ -78,15 +80,15 @@ class StepRecord(Record):
     @model_validator(mode='after')
     def _one_helm(self) -> 'StepRecord':
         if self.steer is not None and self.turn_deg_s is not None:
-            raise ValueError('turn_deg_s: found beside steer, expected one of them')
+            raise ValueError('turn_deg_s: found together with steer, expected one of them')
         return self
 
 
 class RefineRecord(Record):
-    """Mesh refinement of the plant against the gear file.
+    """Refinement of the plant's mesh compared with the gear file.
 
-    The net as nearly as a multiple of 12 meshes around its mouth allows; ``unjoined`` keeps
-    all of them to its end.
+    The net is refined to the nearest multiple of 12 meshes around its mouth. ``unjoined`` keeps all
+    of them to its end.
     """
 
     warp: Factor = 1
@@ -124,12 +126,42 @@ class CoefficientOverrides(Record):
     c6: float | None = None
 
 
+class FaultRecord(Record):
+    """Fault of an instrument from ``at_min`` after the start, for ``for_min`` or to the end.
+
+    ``where`` is the instrument's topic, or topic/quantity. ``what`` is a kind of fault and its size
+    in SI units, such as 'frozen' or 'offset -3.5'.
+    """
+
+    at_min: Annotated[float, Field(ge=0, le=100_000)]
+    for_min: Annotated[float, Field(gt=0, le=100_000)] | None = None
+    where: Annotated[str, Field(min_length=1, max_length=100)]
+    what: Annotated[str, Field(min_length=1, max_length=100)]
+
+    @field_validator('what')
+    @classmethod
+    def _is_a_fault(cls, what: str) -> str:
+        try:
+            fault = parse_fault(what)
+        except InstrumentError as reason:
+            raise ValueError(str(reason)) from reason
+        if fault is None:
+            raise ValueError("found 'none', expected a fault; for_min gives its end")
+        return what
+
+    def planned(self) -> PlannedFault:
+        """Return the planned fault for the instruments."""
+        begin = 60.0 * self.at_min
+        end = None if self.for_min is None else begin + 60.0 * self.for_min
+        return PlannedFault(begin, end, self.where, self.what)
+
+
 class ScenarioRecord(Record):
     """Scenario: the records of a trial's YAML file.
 
-    ``effects`` are those that the plant has beside the gear file's. ``record`` says which topics go
-    into the bag: ``pictures`` are the sonar's image, scan and points, ``instruments`` all else that
-    is measured. ``truth_rate_hz`` is how often there is truth; instruments look at all of it.
+    ``effects`` are added to those of the gear file. ``record`` selects the topics of the bag:
+    ``pictures`` are the sonar's image, scan and points, ``instruments`` all other measurements.
+    ``truth_rate_hz`` is the rate of the truth, which the instruments observe.
     """
 
     description: Annotated[str, Field(min_length=1, max_length=300)]
@@ -165,7 +197,7 @@ class ScenarioRecord(Record):
         minutes = sum(step.minutes for step in self.steps)
         if minutes > 60 * MAX_HOURS:
             raise ValueError(
-                f'steps: found {minutes:g} minutes in all, expected at most {60 * MAX_HOURS}'
+                f'steps: found {minutes:g} minutes in total, expected at most {60 * MAX_HOURS}'
             )
         for number, fault in enumerate(self.faults):
             if fault.at_min >= minutes:

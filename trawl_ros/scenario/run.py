@@ -1,6 +1,6 @@
-"""Run of a trial: the scenario's commands at their times, truth at its rate.
+"""Run of a trial: commands of the scenario at their times, truth at its rate.
 
-Node and command line share this, so the same scenario gives the same data in both.
+Node and command line share it, so a scenario gives the same data in both.
 """
 
 import math
@@ -16,58 +16,57 @@ from trawl_ros.simulation.seabed import SeabedTouched
 from trawl_ros.simulation.simulation import NANOSECONDS, Simulation
 from trawl_ros.solver.stepper import StepFailed
 
-MOST_UNITS, UNITS_PER_S = 5, 20
-"""The simulation's period is at most this many units of 0.05 s: its solver steps twice as far, and
-0.5 s leave it within a per cent of a converged run."""
+MAX_UNITS_PER_PERIOD, UNITS_PER_S = 5, 20
+"""Largest period of the simulation in units of 0.05 s. The solver takes steps of two periods; with
+0.5 s it stays within a per cent of a converged run."""
 
-
-PERIODS_PER_WAVE = 40
-"""The simulation's period is at most this part of the shortest wave's: its solver, which steps
-twice as far, then gives how much the warps' tension varies within 3 % of a converged run."""
+MIN_PERIODS_PER_WAVE = 40
+"""Least number of periods of the simulation in the shortest wave. The variation of the warps'
+tension is then within 3 % of a converged run."""
 
 
 def periods_per_truth(truth_rate_hz: float, shortest_wave_s: float = math.inf) -> int:
-    """Number of simulation periods into which that between two truths is divided.
+    """Return the number of simulation periods between two truths.
 
     Parameters
     ----------
     truth_rate_hz
         Rate of the truth, Hz.
     shortest_wave_s
-        Shortest period of the ship's heave.
+        Shortest period of the ship's heave, s.
     """
     units = round(UNITS_PER_S / truth_rate_hz)
-    most = min(MOST_UNITS, max(1.0, UNITS_PER_S * shortest_wave_s / PERIODS_PER_WAVE))
+    most = min(MAX_UNITS_PER_PERIOD, max(1.0, UNITS_PER_S * shortest_wave_s / MIN_PERIODS_PER_WAVE))
     longest = max(d for d in range(1, math.floor(most) + 1) if units % d == 0)
     return units // longest
 
 
 class Trial:
-    """Run of a scenario, from its start in equilibrium to its last step's end.
+    """Run of a scenario, from its start in equilibrium to the end of its last step.
 
     Parameters
     ----------
     scenario
         From `load_scenario`.
     model
-        The plant; built from the scenario when not given.
+        Model of the plant; by default built from the scenario.
     stamp
         Time of the start, ns.
 
     Attributes
     ----------
     model : GearModel
-        The plant that is towed.
+        Model of the towed plant.
     simulation : Simulation
-        The tow. Its command is what the scenario plans or, where autopilot and autotrawl drive,
-        what they make of it; it is set anew at each time step.
+        Simulated tow. Its command is set at each time step, from the scenario or from autopilot
+        and autotrawl.
     duration_s : float
         Duration of the trial, s.
 
     Raises
     ------
     NoSteadyState
-        If the start, or what a step without a turn asks for, is no usable steady state.
+        If the start, or a step without a turn, has no usable steady state.
     SeabedTouched
         If the gear starts on the seabed.
     """
@@ -121,8 +120,7 @@ class Trial:
         Raises
         ------
         ScenarioError
-            If the gear is moved so violently that its motion cannot be computed, or comes to
-            the seabed.
+            If the motion of the gear is too violent to be computed, or the gear touches the seabed.
         """
         if self._given == self._truths:
             return None

@@ -32,7 +32,7 @@ from trawl_ros.simulation.command import Command
 
 @dataclass(frozen=True)
 class Driving:
-    """Controllers beside the plain commands: the autopilot's target, and the autotrawl."""
+    """Controllers in a step: target of the autopilot, and autotrawl."""
 
     steer: SteerRecord | None = None
     autotrawl: AutotrawlRecord = NOBODY
@@ -40,10 +40,10 @@ class Driving:
 
 @dataclass(frozen=True)
 class Scenario:
-    """Scenario with the files it names.
+    """Scenario with its gear and instruments.
 
-    ``path`` is the file, ``gear`` what it says of the gear as it stands in the gear file,
-    ``plant`` that gear with the scenario's refinement, coefficients and water: the truth.
+    ``path`` is the file and ``gear`` the content of the gear file. ``plant`` is the true gear, with
+    the refinement, coefficients and water of the scenario.
 
     Examples
     --------
@@ -62,12 +62,12 @@ class Scenario:
 
     @property
     def heading(self) -> float:
-        """First heading, ENU yaw, rad."""
+        """Heading at the start, ENU yaw, rad."""
         return math.radians(self.record.heading_deg)
 
     @cached_property
     def commands(self) -> tuple[tuple[float, Command], ...]:
-        """Command of each step with its begin (s since the start)."""
+        """Command of each step with its beginning (s since the start)."""
         command = self.start
         begin = 0.0
         listed = []
@@ -90,12 +90,12 @@ class Scenario:
 
     @property
     def steered(self) -> bool:
-        """True if an autopilot steers at any time."""
+        """True if an autopilot steers in any step."""
         return any(driving.steer is not None for driving in self.drivings)
 
     @property
     def autotrawled(self) -> bool:
-        """True if an autotrawl works the winches at any time."""
+        """True if an autotrawl controls the winches in any step."""
         return any(driving.autotrawl.mode != 'off' for driving in self.drivings)
 
     @property
@@ -120,12 +120,12 @@ class Scenario:
 
     @property
     def draws(self) -> SeedPlan:
-        """Seed plan of the instruments: the seed, and the times of changes."""
+        """Seed plan of the instruments: seed and times of changes."""
         return SeedPlan(self.record.seed, self.state_changes_s)
 
     @cached_property
     def surroundings(self) -> Surroundings:
-        """The water around the instruments."""
+        """Water around the instruments."""
         return build_surroundings(self.plant)
 
     @cached_property
@@ -143,7 +143,7 @@ class Scenario:
         return tuple(record.planned() for record in self.record.faults)
 
     def step_at(self, time: float) -> StepRecord:
-        """Return the step that is under way at a time (s since the start)."""
+        """Return the step at a time (s since the start)."""
         return self.record.steps[self._number(time)]
 
     def commands_at(self, time: float) -> Command:
@@ -156,19 +156,18 @@ class Scenario:
 
     def _number(self, time: float) -> int:
         begins = [begin for begin, _ in self.commands]
-        # A step begins with the instant that rounding may have put just before it.
+        # Rounding may put the first instant of a step just before it.
         return max(0, bisect_right(begins, time + 1e-6) - 1)
 
 
 def load_scenario(path: str | Path) -> Scenario:
-    """Read and check a scenario file and all that it names.
+    """Read and check a scenario file, with its gear and instruments.
 
     Parameters
     ----------
     path
-        A file, or the name of a scenario that comes with the package, such as ``'demo'``. Gear
-        and instrument files that it names are sought beside it if their names end in ``.yaml``,
-        else among those that come with the package.
+        File, or name of a scenario of the package, such as ``'demo'``. Gear and instrument files
+        with names in ``.yaml`` are sought in the same folder, others in the package.
 
     Returns
     -------
@@ -178,7 +177,7 @@ def load_scenario(path: str | Path) -> Scenario:
     Raises
     ------
     ScenarioError
-        Naming file, key, what was found and what was expected.
+        With file, key, what was found and what was expected.
 
     Examples
     --------
@@ -192,9 +191,7 @@ def load_scenario(path: str | Path) -> Scenario:
     try:
         gear = load_gear(_beside(path, record.gear))
     except TrawlError as reason:
-        raise ScenarioError(
-            f"{path}: gear: '{record.gear}' is no usable gear: {reason}"
-        ) from reason
+        raise ScenarioError(f"{path}: gear: '{record.gear}' cannot be used: {reason}") from reason
     plant, instruments = _plant(gear, record, path), _instruments(record, path)
     scenario = Scenario(path, record, gear, plant, instruments)
     _check_faults(scenario)
@@ -202,10 +199,10 @@ def load_scenario(path: str | Path) -> Scenario:
 
 
 def _check_faults(scenario: Scenario) -> None:
-    """Check with the instruments that each fault is possible at its place."""
+    """Check that the instruments can have the planned faults."""
     if not scenario.faults:
         return
-    # All instruments, of which a node needs one group only.
+    # Imported here, because a node needs only one group of instruments.
     from trawl_ros.instruments.suite import InstrumentSuite
 
     panel = InstrumentSuite(
@@ -239,7 +236,7 @@ def _plant(gear: GearRecord, record: ScenarioRecord, path: Path) -> GearRecord:
     data['board']['coefficients'] |= record.coefficients.model_dump(exclude_none=True)
     data['water'] |= record.water.model_dump(exclude_none=True)
     data['effects'] = (*data['effects'], *(effect.model_dump() for effect in record.effects))
-    # Checked again: what differs must fit what stayed.
+    # Validate again, because changed values must fit the others.
     return validated(GearRecord, data, path, ScenarioError, prefix='plant')
 
 
@@ -266,5 +263,5 @@ def _lengths(record: SteadyStartRecord | StepRecord) -> tuple[float | None, floa
 
 
 def true_coefficients(path: str | Path) -> FloatArray:
-    """Read the coefficients (12,) that a scenario's plant has, in the order of eq. 36."""
+    """Read the coefficients (12,) of a scenario's plant, in the order of eq. 36."""
     return load_scenario(path).plant.board.coefficients.array()

@@ -1,4 +1,4 @@
-"""Records of a trial's sea: heave, seabed and schools of fish."""
+"""Records of the sea of a trial: heave, seabed and schools of fish."""
 
 import math
 import zlib
@@ -23,11 +23,11 @@ Swimming = Annotated[float, Field(ge=-3, le=3)]
 
 
 class HeaveRecord(Record):
-    """Heave of the ship by the weather.
+    """Heave of the ship.
 
     For ``irregular``, ``height_m`` is the significant height of the heave (not of the waves) and
-    ``period_s`` that of the spectrum's peak; for ``regular``, height from trough to crest and
-    period of a sine. The period is the one felt on board.
+    ``period_s`` the peak period of its spectrum. For ``regular``, they are the height from trough
+    to crest and the period of a sine. Periods are those of encounter.
     """
 
     kind: Literal['irregular', 'regular'] = 'irregular'
@@ -38,16 +38,16 @@ class HeaveRecord(Record):
 
 
 class DepthRecord(Record):
-    """Depth of the seabed at a distance from where the ship starts."""
+    """Depth of the seabed at a distance from the start of the ship."""
 
     distance_m: Place
     depth_m: Annotated[float, Field(ge=10, le=11_000)]
 
 
 class SeabedRecord(Record):
-    """Profile of the seabed along a direction of ``map`` (ENU yaw); across it the seabed is level.
+    """Profile of the seabed along a direction of ``map`` (ENU yaw), level across it.
 
-    One depth makes it flat; between two it is straight, beyond the last it stays level.
+    Depth is interpolated linearly between points and constant beyond them.
     """
 
     direction_deg: Degrees = 0.0
@@ -57,14 +57,14 @@ class SeabedRecord(Record):
     def _distances_rise(self) -> 'SeabedRecord':
         distances = [point.distance_m for point in self.profile]
         if any(b <= a for a, b in pairwise(distances)):
-            raise ValueError(f'profile: distances must rise, found {distances}')
+            raise ValueError(f'profile: found distances {distances}, expected increasing distances')
         return self
 
 
 class SchoolRecord(Record):
-    """School of fish, an ellipsoid, at its middle's position when the trial starts.
+    """School of fish, an ellipsoid with its centre at the start of the trial.
 
-    It drifts with the current at its depth and swims through the water besides.
+    It drifts with the current at its depth and swims through the water.
     """
 
     east_m: Place
@@ -81,8 +81,8 @@ class SchoolRecord(Record):
     def _under_water(self) -> 'SchoolRecord':
         if 0.5 * self.size_up_m > self.depth_m:
             raise ValueError(
-                f'depth_m: found {self.depth_m:g}, expected at least half of size_up_m, which is '
-                f'{self.size_up_m:g}: fish stay in the water'
+                f'depth_m: found {self.depth_m:g}, expected at least half of size_up_m '
+                f'({self.size_up_m:g}), because fish stay in the water'
             )
         return self
 
@@ -101,11 +101,11 @@ def build_sea(record: SeaRecord, water: Water, seed: int) -> Sea:
     Parameters
     ----------
     record
-        From the scenario file.
+        Record of the scenario file.
     water
-        Schools drift with its current.
+        Water, whose current moves the schools.
     seed
-        Of the trial; waves draw from a generator of their own.
+        Seed of the trial; waves use their own random generator.
     """
     return Sea(
         heave=_heave(record.heave, seed),
@@ -146,7 +146,7 @@ def _school(record: SchoolRecord, water: Water) -> School:
 
 
 def build_surroundings(gear: GearRecord) -> Surroundings:
-    """Build the instruments' record of the water in a gear file."""
+    """Build the record of the water for the instruments."""
     return Surroundings(
         build_water(gear).pressure,
         tuple((level.depth_m, level.temperature_deg_c) for level in gear.water.temperature),

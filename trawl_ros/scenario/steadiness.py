@@ -1,4 +1,4 @@
-"""Check of a scenario for steady states, made before hours are spent on it."""
+"""Check of a scenario for steady states, before hours of simulation."""
 
 import math
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from trawl_ros.control.autopilot import FollowTrack, HoldCourse, HoldHeading
-from trawl_ros.control.drift import Way
+from trawl_ros.control.track import Way
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.core.geodesy import Datum
 from trawl_ros.model.gear_model import GearModel
@@ -22,17 +22,16 @@ Found = dict[tuple[Command, float], SteadyState]
 def require_steady_states(scenario: Scenario, model: GearModel) -> None:
     """Check that the gear has a steady state at each command of a scenario.
 
-    A step that turns at a constant rate is left out: a turning ship has no steady state in
-    ``map``. Where an autopilot steers, the state is checked that is towed once she is on course:
-    on each leg of a track, with the drift that the current asks for. Where there is a current
-    and a step's heading cannot be known before, on the way to a track or to fish, it is left
-    out. An autotrawl that holds the tension brings unequal lengths to nearly equal ones, so it is
-    checked with their mean.
+    Steps with a constant rate of turn are not checked, because a turning ship has no steady state
+    in ``map``. With an autopilot, the states on course are checked: on each leg of a track, with
+    the drift angle in the current. Headings on the way to a track or to fish are unknown, so they
+    are not checked in a current. An autotrawl in mode ``tension`` makes unequal lengths nearly
+    equal, so their mean is checked.
 
     Raises
     ------
     NoSteadyState
-        Naming file and step, and why the gear has no usable steady state there.
+        With file, step and the reason, if the gear has no usable steady state there.
     """
     found: Found = {}
     for name, command, heading in _states(scenario, model):
@@ -42,15 +41,15 @@ def require_steady_states(scenario: Scenario, model: GearModel) -> None:
             found[command, heading] = _steady(model, command, heading, found)
         except NoSteadyState as reason:
             raise NoSteadyState(
-                f'{scenario.path}: {name}: {reason}; expected warp lengths and a speed at '
-                'which the gear tows steadily',
+                f'{scenario.path}: {name}: {reason}; expected warp lengths and a speed with a '
+                'steady state',
                 reason.reason,
                 reason.remedy,
             ) from reason
 
 
 def _states(scenario: Scenario, model: GearModel) -> Iterator[tuple[str, Command, float]]:
-    """Steady states that a trial asks for: name, command and heading of each."""
+    """Yield the steady states of a trial: name, command and heading of each."""
     still = not np.any(model.water.currents)
     yield 'start', scenario.start, scenario.heading
     heading: float | None = scenario.heading
@@ -58,7 +57,7 @@ def _states(scenario: Scenario, model: GearModel) -> Iterator[tuple[str, Command
     for record, (_, command), driving in steps:
         name = f"step '{record.name}'"
         if driving.steer is not None:
-            headings = _settled(driving.steer, scenario, command.speed, model)
+            headings = _final_headings(driving.steer, scenario, command.speed, model)
             heading = headings[-1] if headings else None
         elif command.turn_rate:
             if heading is not None:
@@ -69,12 +68,14 @@ def _states(scenario: Scenario, model: GearModel) -> Iterator[tuple[str, Command
         if driving.autotrawl.mode == 'tension':
             mean = 0.5 * (command.port_length + command.starboard_length)
             command = Command(mean, mean, command.speed)
-        for settled in [scenario.heading] if still else headings:
-            yield name, command, settled
+        for final in [scenario.heading] if still else headings:
+            yield name, command, final
 
 
-def _settled(steer: SteerRecord, scenario: Scenario, speed: float, model: GearModel) -> list[float]:
-    """Final headings of a ship under this target, as far as they are known."""
+def _final_headings(
+    steer: SteerRecord, scenario: Scenario, speed: float, model: GearModel
+) -> list[float]:
+    """Return the final headings of a ship with this target, if they are known."""
     vessel = scenario.instruments.vessel
     target = steer.target(Datum(vessel.datum_lat_deg, vessel.datum_lon_deg))
     way = Way(speed, model.water.surface_current[:2], math.radians(steer.max_turn_deg_s))
@@ -89,7 +90,7 @@ def _settled(steer: SteerRecord, scenario: Scenario, speed: float, model: GearMo
 
 
 def _steady(model: GearModel, command: Command, heading: float, found: Found) -> SteadyState:
-    """Solve warm from the last state on this heading, and cold where that leads nowhere."""
+    """Solve warm from the last state on this heading, and cold if that fails."""
     lengths = (command.port_length, command.starboard_length)
     near = [state.equilibrium for (_, course), state in found.items() if course == heading]
     if near:

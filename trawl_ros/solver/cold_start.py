@@ -1,11 +1,11 @@
 """Cold start: steady shapes without a known neighbour, by continuation from bowed twine.
 
-Netting has bars that pull and bars that hang slack, and Newton's steps flip them from one to the
-other without end. Twine that bows under a load across it pulls a little however slack it hangs:
-with a large load the shape is found easily, and the load is then taken away step by step.
+Netting has taut bars and slack bars, and Newton steps flip them back and forth without converging.
+Twine that bows under a load across it still pulls a little when it is slack. With a large load the
+shape is found easily; the load is then reduced step by step to zero (a homotopy).
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,36 +20,61 @@ from trawl_ros.solver.first_guess import (
     first_guess,
     shifted_to,
 )
-from trawl_ros.solver.relax import TOLERANCE, WARM_LIMIT, WARM_TIME_STEP, relax, without_attitude
+from trawl_ros.solver.relax import (
+    FORCE_TOLERANCE,
+    WARM_ITERATIONS,
+    WARM_TIME_STEP_S,
+    relax,
+    without_attitude,
+)
 
-PRESSURE = 1000.0
-"""Load across a bar per area (Pa) with which a shape is sought: about three times that of the
-water on netting that is towed at 2 m/s at 20° to its bars."""
-
-HARDER = 1.0, 4.0, 16.0
-"""Multiples of that load that are tried one after another, each where the one before does not calm
-the netting: nets of thick twine, or held so that they come to lie nearly flat, need more."""
-
-COARSE_LIMIT, LIMIT = 100, 3.0
-"""Iterations after which a rough shape is given up: of the coarsest net, and of finer ones per
-square root of the number of nodes, so per row and column. With 48 meshes around up to 63 are
-needed, with 96 up to 160."""
-
-ROUGH, SHARE = 1.0, 0.01
-"""Force (N) left at which a shape with bowed twine is found; on the way down, at which share of the
-force that the fall of the load has left over, where that is more."""
-
-LEAST, TOO_LITTLE = 4.0, 1e-3
-"""Load (Pa) below which it is taken away altogether; where that fails it is lowered on, down to
-the second value."""
-
-FIRST_FALL, FALL, LEAST_FALL = 2.0, 3.0, 1.2
-"""Factors by which the load is lowered at first, with nothing known of what that does to the shape,
-and later, and the one at which that is given up."""
+BOW_PRESSURE_PA = 1000.0
+"""Load across a bar per area in the first search: about three times that of the water on netting
+that is towed at 2 m/s at 20° to its bars."""
 
 BOWED_POWER = 2.0 / 3.0
-"""Power of the load with which the tension rises of a bar that is just as long as it is unstretched
-(`trawl_ros.model.bar.bowed_at`): the shape is nearly a straight line in that."""
+"""Exponent of the load in the tension of a bar at its unstretched length
+(`trawl_ros.model.bar.bowed_at`): the shape is nearly linear in this power of the load."""
+
+
+@dataclass(frozen=True)
+class ColdStartOptions:
+    """Options of the continuation from bowed twine.
+
+    Attributes
+    ----------
+    pressure_factors
+        Multiples of the first load, each tried where the one before does not converge: nets of
+        thick twine, or held nearly flat, need more.
+    coarse_iterations
+        Iterations for the coarsest net.
+    iterations_per_row
+        Iterations for finer nets, per square root of the number of nodes. With 48 meshes around up
+        to 63 are needed, with 96 up to 160.
+    rough_force_n
+        Force left at which a shape with bowed twine is converged.
+    rough_ratio
+        The same, relative to the force that the last reduction of the load left over.
+    min_pressure_pa, last_pressure_pa
+        Load below which it is set to zero; where this fails it is reduced further, down to the
+        second value.
+    first_reduction, reduction, min_reduction
+        Factors of the first reduction, of later ones, and the factor at which it is given up.
+    """
+
+    pressure_factors: tuple[float, ...] = (1.0, 4.0, 16.0)
+    coarse_iterations: int = 100
+    iterations_per_row: float = 3.0
+    rough_force_n: float = 1.0
+    rough_ratio: float = 0.01
+    min_pressure_pa: float = 4.0
+    last_pressure_pa: float = 1e-3
+    first_reduction: float = 2.0
+    reduction: float = 3.0
+    min_reduction: float = 1.2
+
+
+OPTIONS = ColdStartOptions()
 
 
 def cold_start(
@@ -57,15 +82,15 @@ def cold_start(
 ) -> tuple[State, int, float]:
     """Find a steady shape from that of a coarser net or, for the coarsest, from a first guess.
 
-    Unequal warps are reached from equal ones: the boards' first attitudes are equal too.
+    Unequal warps are reached from equal ones, because the boards' first attitudes are equal too.
 
     Parameters
     ----------
     lying
-        True: boards may lie on their backs. False: the search is given up where they do with bowed
-        twine, whose load then takes long to be taken away.
+        True to allow boards that lie on their backs. False gives up where they do with bowed twine,
+        because reducing its load then takes long.
     turned
-        True: the search begins with plates of a pair turned over.
+        True to begin with plates of a pair turned over.
 
     Returns
     -------
@@ -74,29 +99,30 @@ def cold_start(
     """
     even = replace(tow, lengths=np.full(2, tow.lengths.mean()))
     spent = 0
-    for harder in HARDER:
-        pressure = harder * PRESSURE
+    for factor in OPTIONS.pressure_factors:
+        pressure = factor * BOW_PRESSURE_PA
         state, more, residual = _bowed_shape(model, heading, even, pressure, turned=turned)
         spent += more
-        if residual <= ROUGH:
+        if residual <= OPTIONS.rough_force_n:
             break
-    if residual <= ROUGH:
+    if residual <= OPTIONS.rough_force_n:
         if not lying and lies_over(model, state) and outward_normal_lift(state).min() > 0.0:
-            return state, spent, ROUGH
+            return state, spent, OPTIONS.rough_force_n
         state, more, residual = straightened(model, state, even, pressure=pressure)
         spent += more
-    if residual > TOLERANCE or tow.lengths[0] == tow.lengths[1]:
+    if residual > FORCE_TOLERANCE or tow.lengths[0] == tow.lengths[1]:
         return state, spent, residual
     state, more, residual = relax(
-        model, shifted_to(model, state, even, tow), tow, tolerance=TOLERANCE, time_step=2.0
+        model, shifted_to(model, state, even, tow), tow, tolerance=FORCE_TOLERANCE, time_step=2.0
     )
     return state, spent + more, residual
 
 
 def bowed(model: GearModel, pressure: float) -> GearModel:
-    """The same gear with bars that bow at least as under this load (Pa) across them."""
+    """Return the gear with bars that bow at least as under this load (Pa) across them."""
     bars = model.bars
     load = pressure * bars.normal_area * model.rest / bars.stiffness
+    # With the load Q on all of a bar, bow = (Q / EA)² / 24 (`trawl_ros.model.bar.bowed_at`).
     bow = np.where(model.warp_side < 0, load**2 / 24.0, 0.0)
     return replace(model, bars=replace(bars, bow=np.maximum(bars.bow, bow)))
 
@@ -104,7 +130,7 @@ def bowed(model: GearModel, pressure: float) -> GearModel:
 def _bowed_shape(
     model: GearModel, heading: float, tow: Tow, pressure: float, *, turned: bool
 ) -> tuple[State, int, float]:
-    """Shape of the gear with twine that is bowed by this load, Pa."""
+    """Find the shape of the gear with twine that is bowed by this load, Pa."""
     coarse = coarser_model(model)
     loose = bowed(model, pressure)
     if coarse is None:
@@ -120,21 +146,30 @@ def _bowed_shape(
         )
     else:
         state, spent, residual = _bowed_shape(coarse, heading, tow, pressure, turned=turned)
-        if residual > ROUGH:
+        if residual > OPTIONS.rough_force_n:
             return state, spent, residual
         state = carried_over(coarse, state, model)
-    limit = round(LIMIT * np.sqrt(model.nodes)) if coarse else COARSE_LIMIT
-    state, more, residual = relax(loose, state, tow, tolerance=ROUGH, time_step=1.0, limit=limit)
+    limit = OPTIONS.coarse_iterations
+    if coarse is not None:
+        limit = round(OPTIONS.iterations_per_row * np.sqrt(model.nodes))
+    state, more, residual = relax(
+        loose, state, tow, tolerance=OPTIONS.rough_force_n, time_step=1.0, limit=limit
+    )
     return state, spent + more, residual
 
 
 def held_shape(model: GearModel, state: State, tow: Tow) -> tuple[State, int, float]:
-    """Find the shape of a gear whose boards keep the attitude that they have, as `relax` has it."""
+    """Find the shape of a gear whose boards keep their attitudes; returns as `relax` does."""
     free = without_attitude(model)
     state, spent, residual = relax(
-        bowed(model, PRESSURE), state, tow, tolerance=ROUGH, time_step=2.0, free=free
+        bowed(model, BOW_PRESSURE_PA),
+        state,
+        tow,
+        tolerance=OPTIONS.rough_force_n,
+        time_step=2.0,
+        free=free,
     )
-    if residual > ROUGH:
+    if residual > OPTIONS.rough_force_n:
         return state, spent, residual
     state, more, residual = straightened(model, state, tow, free)
     return state, spent + more, residual
@@ -146,30 +181,31 @@ def straightened(
     tow: Tow,
     free: BoolArray | None = None,
     *,
-    pressure: float = PRESSURE,
+    pressure: float = BOW_PRESSURE_PA,
 ) -> tuple[State, int, float]:
-    """Take the load of `bowed` (Pa) away from a shape found with it; ``free`` as for `relax`."""
-    fall, least, spent, before = FALL, LEAST, 0, None
+    """Reduce the load of `bowed` (Pa) to zero, from its shape; ``free`` as in `relax`."""
+    fall, least = OPTIONS.reduction, OPTIONS.min_pressure_pa
+    spent, before = 0, None
     while True:
-        lower = pressure / (fall if before else min(fall, FIRST_FALL))
+        lower = pressure / (fall if before else min(fall, OPTIONS.first_reduction))
         last = lower < least
-        wanted, start, trial_model = TOLERANCE, state, model
+        wanted, start, trial_model = FORCE_TOLERANCE, state, model
         if not last:
             trial_model = bowed(model, lower)
             left = forces(trial_model, state, tow)
             if free is not None:
                 left = left[free]
-            wanted = max(ROUGH, SHARE * float(np.abs(left).max()))
+            wanted = max(OPTIONS.rough_force_n, OPTIONS.rough_ratio * float(np.abs(left).max()))
         if before:
-            start = _on(*before, pressure, state, 0.0 if last else lower)
+            start = _extrapolated(*before, pressure, state, 0.0 if last else lower)
         trial, more, residual = relax(
             trial_model,
             start,
             tow,
             tolerance=wanted,
-            time_step=WARM_TIME_STEP,
+            time_step=WARM_TIME_STEP_S,
             free=free,
-            limit=WARM_LIMIT,
+            limit=WARM_ITERATIONS,
         )
         spent += more
         if residual <= wanted:
@@ -177,16 +213,16 @@ def straightened(
             state, pressure = trial, lower
             if last:
                 return state, spent, residual
-        elif last and least > TOO_LITTLE:
-            least /= FALL**2
-        elif fall > LEAST_FALL:
+        elif last and least > OPTIONS.last_pressure_pa:
+            least /= OPTIONS.reduction**2
+        elif fall > OPTIONS.min_reduction:
             fall = np.sqrt(fall)
         else:
             return trial, spent, residual
 
 
-def _on(high: float, first: State, low: float, second: State, load: float) -> State:
-    """The shape at a load, on the straight line through those at two higher ones (Pa)."""
+def _extrapolated(high: float, first: State, low: float, second: State, load: float) -> State:
+    """Extrapolate the shape at a load from those at two higher loads (Pa)."""
     top, here, there = (value**BOWED_POWER for value in (high, low, load))
     share = (here - there) / (top - here)
     return replace(

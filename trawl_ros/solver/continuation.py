@@ -1,8 +1,7 @@
 """Pseudo-arclength continuation of steady states in one parameter, around folds.
 
-Beside the shape q the parameter p is unknown, and the step along the branch, not that of p, is
-given (Keller). So a branch is followed through a fold, where p turns back and K = -∂F/∂q is
-singular.
+The shape q and the parameter p are both unknown, and the step along the branch is given (Keller
+1977). So a branch is followed through a fold, where p turns back and K = -∂F/∂q is singular.
 """
 
 from collections.abc import Callable, Iterator
@@ -16,29 +15,46 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.first_guess import at_velocity
 from trawl_ros.solver.linear.factor import Factor, factorised
-from trawl_ros.solver.relax import LIMIT_METRES, LIMIT_RADIANS, TOLERANCE
-
-ITERATIONS = 12
-"""Newton steps after which a step along the branch is tried shorter."""
-
-EASY = 5
-"""Newton steps up to which the next step is longer."""
-
-LONGEST, SHORTEST = 1.0, 1e-3
-"""Step along the branch: the root mean square of all parts' changes in parts of `relax`'s limits,
-and of the parameter's in parts of its scale."""
-
-NUDGE = 1e-5
-"""Part of the parameter's scale over which forces are differenced."""
+from trawl_ros.solver.relax import FORCE_TOLERANCE, MAX_STEP_M, MAX_STEP_RAD
 
 Family = Callable[[float], tuple[GearModel, Tow]]
 """Gear and towing boundary at a value of the parameter."""
 
 
 @dataclass(frozen=True)
+class ContinuationOptions:
+    """Options of a continuation.
+
+    A step along the branch is the root mean square of all displacements relative to `relax`'s
+    largest step, and of the parameter's change relative to its scale.
+
+    Attributes
+    ----------
+    newton_steps
+        Newton steps after which a shorter step along the branch is tried.
+    easy_newton_steps
+        Newton steps up to which the next step along the branch is longer.
+    max_step, min_step
+        Longest step along the branch, and the one below which it ends.
+    scale_fraction
+        Step of force differences, as a fraction of the parameter's scale.
+    """
+
+    newton_steps: int = 12
+    easy_newton_steps: int = 5
+    max_step: float = 1.0
+    min_step: float = 1e-3
+    scale_fraction: float = 1e-5
+
+
+OPTIONS = ContinuationOptions()
+
+
+@dataclass(frozen=True)
 class BranchPoint:
-    """Point of a branch: the parameter's value, its gear, boundary and steady shape, and the rate
-    of the parameter along the branch, which changes sign at a fold.
+    """Point of a branch: value of the parameter, its gear, boundary and steady shape.
+
+    ``rate`` is the rate of the parameter along the branch, which changes sign at a fold.
     """
 
     value: float
@@ -49,7 +65,7 @@ class BranchPoint:
 
 
 def branch(family: Family, value: float, state: State, *, scale: float) -> Iterator[BranchPoint]:
-    """Follow a branch from a steady shape, as long as steps can be made.
+    """Follow a branch from a steady shape, as long as the steps converge.
 
     Parameters
     ----------
@@ -65,9 +81,9 @@ def branch(family: Family, value: float, state: State, *, scale: float) -> Itera
     state = at_velocity(state, tow.block_velocities.mean(0))
     _, factor = _factor(family, value, state)
     along, rate = _tangent(factor, family, value, state, scale, weights)
-    step = 0.25 * LONGEST
+    step = 0.25 * OPTIONS.max_step
     yield BranchPoint(value, model, tow, state, rate)
-    while step >= SHORTEST:
+    while step >= OPTIONS.min_step:
         found = _corrected(family, value, state, (along, rate), step, scale, weights)
         if found is None:
             step *= 0.5
@@ -75,28 +91,29 @@ def branch(family: Family, value: float, state: State, *, scale: float) -> Itera
         value, state, factor, spent = found
         model, tow = family(value)
         ahead, turning = _tangent(factor, family, value, state, scale, weights)
+        # The tangent keeps its direction, so the branch is not followed back.
         sign = np.sign(weights @ (ahead * along) + turning * rate)
         along, rate = sign * ahead, float(sign * turning)
         yield BranchPoint(value, model, tow, state, rate)
-        if spent <= EASY:
-            step = min(1.5 * step, LONGEST)
+        if spent <= OPTIONS.easy_newton_steps:
+            step = min(1.5 * step, OPTIONS.max_step)
 
 
 def _weights(model: GearModel) -> FloatArray:
-    """Weights (dof,) of the squares of all parts' changes; they sum up to about one."""
-    weights = np.full(model.dof, 1.0 / LIMIT_METRES**2)
-    weights[3 * model.nodes :].reshape(2, 6)[:, 3:] = 1.0 / LIMIT_RADIANS**2
+    """Return weights (dof,) of squared displacements, which sum up to about one."""
+    weights = np.full(model.dof, 1.0 / MAX_STEP_M**2)
+    weights[3 * model.nodes :].reshape(2, 6)[:, 3:] = 1.0 / MAX_STEP_RAD**2
     weights[: 3 * model.nodes] /= model.nodes
     return weights
 
 
 def _push(family: Family, value: float, state: State, scale: float) -> FloatArray:
-    """Change of the forces (dof,) with the parameter, per scale."""
-    sides = []
+    """Return the change of the forces (dof,) with the parameter, per scale."""
+    sides, nudge = [], OPTIONS.scale_fraction
     for sign in (-1.0, 1.0):
-        model, tow = family(value + sign * NUDGE * scale)
+        model, tow = family(value + sign * nudge * scale)
         sides.append(forces(model, at_velocity(state, tow.block_velocities.mean(0)), tow))
-    return (sides[1] - sides[0]) / (2 * NUDGE)
+    return (sides[1] - sides[0]) / (2 * nudge)
 
 
 def _factor(family: Family, value: float, state: State) -> tuple[FloatArray, Factor]:
@@ -108,7 +125,7 @@ def _factor(family: Family, value: float, state: State) -> tuple[FloatArray, Fac
 def _tangent(
     factor: Factor, family: Family, value: float, state: State, scale: float, weights: FloatArray
 ) -> tuple[FloatArray, float]:
-    """Unit tangent of the branch: of the shape (dof,), and of the parameter in its scale."""
+    """Return the unit tangent: of the shape (dof,), and of the parameter in its scale."""
     along = factor.solve(_push(family, value, state, scale))
     size = float(np.sqrt(weights @ along**2 + 1.0))
     return along / size, 1.0 / size
@@ -123,24 +140,27 @@ def _corrected(
     scale: float,
     weights: FloatArray,
 ) -> tuple[float, State, Factor, int] | None:
-    """A step along the tangent, and Newton's steps across it back to the branch: the point there,
-    with the factors of K and the number of Newton's steps; None where they do not come to rest.
+    """Step along the tangent and return to the branch by Newton steps normal to it.
+
+    Returns the value and state there, the factors of K and the number of Newton steps; None where
+    they do not converge.
     """
     along, rate = tangent
     state, value = state.moved(step * along), value + step * rate * scale
-    for spent in range(ITERATIONS + 1):
+    for spent in range(OPTIONS.newton_steps + 1):
         try:
             force, factor = _factor(family, value, state)
         except RuntimeError:
             return None
-        if np.abs(force).max() < TOLERANCE:
+        if np.abs(force).max() < FORCE_TOLERANCE:
             _, tow = family(value)
             return value, at_velocity(state, tow.block_velocities.mean(0)), factor, spent
+        # Bordered system by block elimination: K δq = F + δp ∂F/∂p, with (δq, δp) ⟂ tangent.
         both = factor.solve(np.column_stack([force, _push(family, value, state, scale)]))
         across, with_value = weights * along @ both
         change = -across / (with_value + rate)
         move = both[:, 0] + change * both[:, 1]
-        if not np.isfinite(change) or weights @ move**2 + change**2 > (4.0 * LONGEST) ** 2:
+        if not np.isfinite(change) or weights @ move**2 + change**2 > (4.0 * OPTIONS.max_step) ** 2:
             return None
         state, value = state.moved(move), value + change * scale
     return None

@@ -1,7 +1,7 @@
 """Derivatives of sensor readings by the values of effects.
 
-The change of forces by an effect is differenced at the steady state and carried through the
-solver as all sensitivities are; its change of inputs and readings follows by the chain rule.
+The change of forces by an effect is a finite difference at the steady state; the linearised gear
+turns it into a change of the observables. Changes of inputs and readings follow by the chain rule.
 """
 
 from collections.abc import Sequence
@@ -22,15 +22,15 @@ from trawl_ros.solver.likeness import same_forces, same_observables
 from trawl_ros.solver.linear.factor import solve_refined
 from trawl_ros.solver.rest_linearisation import rest_linearisation
 
-PART = 1e-4
-"""Differences are taken over this part of a parameter's std."""
+STD_FRACTION_OF_DIFFERENCES = 1e-4
+"""Step of central differences by an effect's value, as a fraction of its std."""
 
 INPUT_STEP = 1e-4
-"""And over this much of warp length (m) and speed (m/s)."""
+"""Step of central differences by warp length (m) and speed (m/s)."""
 
 
 def shown_values(acting: EffectSet, values: FloatArray, at: Situation) -> FloatArray:
-    """Sensor readings (n_observables,) of observables: sensor effects applied."""
+    """Return sensor readings (n_observables,) of observables, with sensor effects applied."""
     if not acting:
         return values
     readings = acting.apply_to_sensors(dict(zip(OBSERVABLES, map(float, values), strict=True)), at)
@@ -46,7 +46,7 @@ def chained(
     inputs: FloatArray,
     at: Situation,
 ) -> FloatArray:
-    """Derivatives of sensor readings by coefficients and indicated inputs.
+    """Return derivatives of sensor readings by coefficients and shown inputs.
 
     Parameters
     ----------
@@ -55,21 +55,19 @@ def chained(
     found
         The steady state with ``acting``.
     jacobian
-        Of the observables (n_observables, 12 + 3) by coefficients and true inputs, there.
+        Derivatives (n_observables, 12 + 3) of the observables by coefficients and true inputs.
     acting
-        The effects that are there.
+        Effects that act on the gear.
     inputs, at
-        As instruments show them (3,), and the situation.
+        Inputs as instruments show them (3,), and the situation.
     """
     if not acting:
         return jacobian
     rows = []
     for place in range(len(inputs)):
         both = [inputs + sign * INPUT_STEP * np.eye(len(inputs))[place] for sign in (1.0, -1.0)]
-        rows.append(
-            _slopes(model, found, 2.0 * INPUT_STEP,
-                    [(acting, one, replace(at, inputs=_three(one))) for one in both])
-        )  # fmt: skip
+        cases = [(acting, one, replace(at, inputs=_three(one))) for one in both]
+        rows.append(_slopes(model, found, 2.0 * INPUT_STEP, cases))
     by_inputs = _carried(gear, found, jacobian, acting, rows, at)
     by_coefficients = sensor_slopes(acting, found.observables.array(), at) @ jacobian[:, :-3]
     return np.hstack((by_coefficients, by_inputs))
@@ -85,7 +83,7 @@ def by_effects(
     inputs: FloatArray,
     at: Situation,
 ) -> FloatArray:
-    """Derivatives of sensor readings by the values of effects.
+    """Return derivatives of sensor readings by the values of effects.
 
     Parameters
     ----------
@@ -94,13 +92,13 @@ def by_effects(
     found
         The steady state with ``acting``.
     jacobian
-        Of the observables by coefficients and true inputs, there.
+        Derivatives of the observables by coefficients and true inputs.
     acting
-        The effects that are there.
+        Effects that act on the gear.
     wanted
-        Effects by whose values to differentiate, as they are there or would be: neutral.
+        Effects by whose values to differentiate; those that do not act have neutral values.
     inputs, at
-        As instruments show them (3,), and the situation.
+        Inputs as instruments show them (3,), and the situation.
 
     Returns
     -------
@@ -110,7 +108,7 @@ def by_effects(
     rows = []
     for active in wanted:
         for index, parameter in enumerate(active.effect.parameters):
-            size = PART * parameter.std
+            size = STD_FRACTION_OF_DIFFERENCES * parameter.std
             step = size * np.eye(len(active.values))[index]
             both = [
                 acting.having(ActiveEffect(active.effect, active.values + sign * step))
@@ -126,8 +124,9 @@ def _slopes(
     size: float,
     both: Sequence[tuple[EffectSet, FloatArray, Situation]],
 ) -> tuple[FloatArray, ...]:
-    """Slopes of forces (dof,), observables, true inputs (3,) and sensor readings, between two
-    cases that are ``size`` apart, at a gear that stays where it is.
+    """Return difference quotients between two cases that are ``size`` apart, at a fixed gear.
+
+    They are those of forces (dof,), observables, true inputs (3,) and sensor readings.
     """
     gears, cases = [], []
     for there, inputs, at in both:
@@ -137,7 +136,7 @@ def _slopes(
     up, down = gears
     at_rest = found.state, found.tow
     push, direct = np.zeros(model.dof), np.zeros(len(OBSERVABLES))
-    # Most effects change few of the properties that these two are made of, or none.
+    # Most effects change no property on which forces and observables depend; skip these.
     if not same_forces(up, down):
         push = (forces(up, *at_rest) - forces(down, *at_rest)) / size
         if not same_observables(up, down):
@@ -153,7 +152,7 @@ def _carried(
     rows: Sequence[tuple[FloatArray, ...]],
     at: Situation,
 ) -> FloatArray:
-    """Change of the readings (n_observables, n) by such slopes, once the gear has come to rest."""
+    """Return the change of the readings (n_observables, n) in the new equilibrium."""
     pushes, direct, towed, shown = (np.column_stack(part) for part in zip(*rows, strict=True))
     along = np.zeros(direct.shape)
     if pushes.any():
@@ -165,9 +164,9 @@ def _carried(
 
 
 def sensor_slopes(acting: EffectSet, values: FloatArray, at: Situation) -> FloatArray:
-    """Slopes (n_observables, n_observables) of the sensors' readings by the observables ``values``.
+    """Return derivatives (n_observables, n_observables) of readings by the observables ``values``.
 
-    Most sensors show their own observable alone; swapped ones show that of the other side.
+    Most sensors show only their own observable; swapped ones show that of the other side.
     """
     if not acting.on_sensors:
         return np.eye(len(values))

@@ -1,4 +1,4 @@
-"""Quasi-steady states: usable roots of the forces, and the reasons why there is none."""
+"""Steady states: usable roots of the forces, and the reasons why there is none."""
 
 from dataclasses import dataclass, field, replace
 
@@ -20,34 +20,32 @@ from trawl_ros.records.observables import Observables
 from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.solver.cold_start import cold_start
 from trawl_ros.solver.first_guess import at_velocity, shifted_to
-from trawl_ros.solver.growing_mode import growing_mode
 from trawl_ros.solver.last_state import followed
 from trawl_ros.solver.linear.search_budget import budgeted
 from trawl_ros.solver.operating_point import OperatingPoint, remedy_command, steady_tow
 from trawl_ros.solver.relax import (
-    DRIFT_LIMIT,
-    DRIFT_TIME_STEP,
-    TOLERANCE,
-    WARM_LIMIT,
-    WARM_TIME_STEP,
+    DRIFT_ITERATIONS,
+    DRIFT_TIME_STEP_S,
+    FORCE_TOLERANCE,
+    WARM_ITERATIONS,
+    WARM_TIME_STEP_S,
     relax,
 )
-from trawl_ros.solver.stability import Stability, stability
+from trawl_ros.solver.stability import Stability, growing_mode, stability
 from trawl_ros.solver.warm_start import Tangent, warm_start_in_parts
 
-FAR = 0.3
-"""Part of the warps' length from which a change that Newton's method does not make is drifted
-through rather than leapt over, which takes longer. Where the one way fails, the other still is
-quicker than a cold start."""
+FAR_WARP_CHANGE = 0.3
+"""Relative change of the warps from which slow drift is tried before nearly Newton steps. If one of
+them fails, the other is still faster than a cold start."""
 
 
 @dataclass(frozen=True)
 class Equilibrium:
     """Equilibrium: a root of the forces.
 
-    ``state`` is in ``map`` axes with the ship at the origin; ``outside_law`` says that a board
-    works outside the range of eq. 14; ``highest`` is the height (m) of the gear's highest
-    point, positive when it breaks the surface.
+    ``state`` is in ``map`` axes with the ship at the origin. ``outside_law`` is True if a board
+    works outside the range of its law (eq. 14). ``highest`` is the height (m) of the gear's highest
+    point above the surface.
     """
 
     point: OperatingPoint
@@ -62,16 +60,16 @@ class Equilibrium:
 
     @property
     def tangent(self) -> Tangent | None:
-        """Displacements per change of coefficients, warp lengths and speed, once they are known."""
+        """Displacements per change of coefficients, warp lengths and speed, if they are known."""
         return self._tangents[0] if self._tangents else None
 
     def remember(self, tangent: Tangent) -> None:
-        """Keep the tangent for the way to the next state."""
+        """Keep the tangent for the search of the next state."""
         self._tangents[:] = [tangent]
 
     @property
     def surfaced(self) -> bool:
-        """True if gear breaks the surface."""
+        """True if the gear breaks the surface."""
         return self.highest > 0.0
 
 
@@ -85,9 +83,20 @@ def find_equilibrium(
     cold: bool = True,
     turned: bool = False,
 ) -> Equilibrium:
-    """Find the root at an operating point: warm from ``start``, from the shape ``near``
-    at this very point, or cold; where a root to start from is of no use, only if ``cold``. A cold
-    start begins with plates of a pair ``turned`` over, or on edge.
+    """Find the root of the forces at an operating point.
+
+    Parameters
+    ----------
+    model, point
+        Gear with its effects, and operating point.
+    start
+        Known equilibrium nearby, for a warm start.
+    near
+        Shape close to the root at this same operating point; takes precedence over ``start``.
+    cold
+        True to allow a cold start where the warm one fails.
+    turned
+        True to begin a cold start with plates of a pair turned over, instead of on edge.
 
     Raises
     ------
@@ -98,29 +107,29 @@ def find_equilibrium(
     if near is not None:
         here = at_velocity(near, tow.block_velocities.mean(0))
         state, iterations, residual = relax(
-            model, here, tow, tolerance=TOLERANCE, time_step=DRIFT_TIME_STEP
+            model, here, tow, tolerance=FORCE_TOLERANCE, time_step=DRIFT_TIME_STEP_S
         )
     elif start is not None:
         state, iterations, residual = _from_known(model, start, tow)
-    if (near is None and start is None) or (cold and residual > TOLERANCE):
+    if (near is None and start is None) or (cold and residual > FORCE_TOLERANCE):
         state, iterations, residual = cold_start(
             model, point.heading, tow, lying=near is not None, turned=turned
         )
     where = _where(point)
-    if residual > TOLERANCE and cold and near is None:
+    if residual > FORCE_TOLERANCE and cold and near is None:
         known = None if start is None else (start.point, start.state)
         try:
             state, residual = followed(model, point, where, known), 0.0
         except NoSteadyState as refusal:
             if refusal.reason != 'none found':
                 raise
-            # Perhaps there is one with boards on their backs, at this speed and any other.
+            # The last chance: boards may lie on their backs at every speed.
             state, iterations, residual = cold_start(model, point.heading, tow, lying=True)
-            if residual > TOLERANCE:
+            if residual > FORCE_TOLERANCE:
                 raise
-    if residual > TOLERANCE:
+    if residual > FORCE_TOLERANCE:
         raise NoSteadyState(
-            f'{where}: no steady state found in {iterations} iterations, {residual:.3g} N left'
+            f'{where}: no steady state found in {iterations} iterations, with {residual:.3g} N left'
         )
     seen = observe(model, state, tow)
     attack = np.array([seen.port_attack, seen.starboard_attack])
@@ -129,7 +138,7 @@ def find_equilibrium(
         angles = ', '.join(f'{np.degrees(a):.1f}' for a in attack)
         lean = ', '.join(f'{np.degrees(np.arcsin(up)):.1f}' for up in lift)
         raise NoSteadyState(
-            f'{where}: only a collapsed state was found, attack angles {angles}°, outward normals '
+            f'{where}: only a collapsed state was found: attack angles {angles}°, outward normals '
             f'{lean}° up',
             'collapsed',
         )
@@ -147,21 +156,21 @@ def find_equilibrium(
 
 
 def _from_known(model: GearModel, start: Equilibrium, tow: Tow) -> tuple[State, int, float]:
-    """Search from a known equilibrium: along its tangent, or from it moved along its warps."""
+    """Search from a known equilibrium: along its tangent, or after a shift along its warps."""
     iterations = 0
     if found := warm_start_in_parts(model, start.state, start.tow, tow, start.tangent):
         state, iterations, residual = found
-        if residual <= TOLERANCE:
+        if residual <= FORCE_TOLERANCE:
             return found
     here = shifted_to(model, start.state, start.tow, tow)
-    far = np.any(np.abs(tow.lengths / start.tow.lengths - 1.0) > FAR)
-    ways = (WARM_TIME_STEP, WARM_LIMIT), (DRIFT_TIME_STEP, DRIFT_LIMIT)
+    far = np.any(np.abs(tow.lengths / start.tow.lengths - 1.0) > FAR_WARP_CHANGE)
+    ways = (WARM_TIME_STEP_S, WARM_ITERATIONS), (DRIFT_TIME_STEP_S, DRIFT_ITERATIONS)
     for time_step, limit in ways[::-1] if far else ways:
         state, more, residual = relax(
-            model, here, tow, tolerance=TOLERANCE, time_step=time_step, limit=limit
+            model, here, tow, tolerance=FORCE_TOLERANCE, time_step=time_step, limit=limit
         )
         iterations += more
-        if residual <= TOLERANCE:
+        if residual <= FORCE_TOLERANCE:
             break
     return state, iterations, residual
 
@@ -173,7 +182,7 @@ class SteadyState:
     Attributes
     ----------
     equilibrium
-        State of all nodes and boards, its operating point, and what the solver left over (N).
+        State of all nodes and boards, its operating point, and the residual force (N).
     stability
         Eigenvalues (1/s) of the slowest motions about it.
 
@@ -206,36 +215,35 @@ def steady_state(
     start: Equilibrium | None = None,
     near: State | None = None,
 ) -> SteadyState:
-    """The steady state at a warp length and speed, or the reason why there is none.
+    """Find the steady state at a warp length and speed.
 
     Parameters
     ----------
     model
-        From `build_model`; effects of its gear file act, also those on what counters and log
-        show.
+        From `build_model`; effects of its gear file act, including those on counters and log.
     warp_length
         Unstretched length from the block to the board, m, as the counters show it; one for both
         sides or (port, starboard).
     speed
         Through the water at the surface, m/s, as the log shows it.
     heading
-        ENU yaw, rad; matters when there is a current.
+        ENU yaw, rad; it matters if there is a current.
     start
-        A known equilibrium nearby, which makes this fast.
+        Known equilibrium nearby, which makes the search fast.
     near
-        A shape close to the one sought, at this very operating point.
+        Shape close to the wanted one, at this same operating point.
 
     Returns
     -------
     SteadyState
-        With `observables` (m, N, rad), the `equilibrium` that a neighbouring search may start from,
-        and its `stability`.
+        With `observables` (m, N, rad), the `equilibrium` from which a neighbouring search can
+        start, and its `stability`.
 
     Raises
     ------
     NoSteadyState
-        There is none, it is unstable, the gear breaks the surface, a board works outside
-        the range of its law, or warps or speed are beyond `LIMITS`.
+        If there is none, it is unstable, the gear breaks the surface, a board works outside the
+        range of its law, or warps or speed are outside `LIMITS`.
 
     Examples
     --------
@@ -259,12 +267,12 @@ def find_usable(
     start: Equilibrium | None = None,
     near: State | None = None,
 ) -> SteadyState:
-    """Find the root that meets the conditions of `steady_state`, from where `find_equilibrium` may.
+    """Find a root that meets the conditions of `steady_state`, with starts of `find_equilibrium`.
 
     Raises
     ------
     NoSteadyState
-        As `steady_state` does.
+        Under the conditions of `steady_state`.
     """
     found = find_equilibrium(model, point, start, near=near)
     try:
@@ -272,8 +280,8 @@ def find_usable(
     except NoSteadyState as refusal:
         if not (model.paired and refusal.reason == 'unstable'):
             raise
-        # Plates between two backstrops that meet again balance on edge and lying, stable in one;
-        # where the upper bridle is the heavier one, they turn over.
+        # A plate between two backstrops balances on edge and lying, but is stable in one of them.
+        # With a heavier upper bridle it turns over.
         try:
             return require_usable(model, find_equilibrium(model, point, turned=True))
         except NoSteadyState:
@@ -285,14 +293,14 @@ def find_usable(
 
 
 def _rolled(state: State) -> State:
-    """The same nodes, with boards or plates turned by a quarter about their long axes."""
+    """Return the state with boards or plates rotated by 90° about their long axes."""
     return replace(state, board_rotations=state.board_rotations @ about_axis(0, np.pi / 2.0))
 
 
 def with_effects(
     model: GearModel, lengths: tuple[float, float], speed: float, heading: float = 0.0
 ) -> tuple[GearModel, OperatingPoint]:
-    """Give gear and operating point with the effects of the gear's file, from what is shown."""
+    """Apply the effects of the gear's file to the gear and to the shown warps and speed."""
     port, starboard = lengths
     effects = effects_of(model.gear)
     if effects:
@@ -324,7 +332,7 @@ def require_usable(model: GearModel, found: Equilibrium) -> SteadyState:
         worst = motion.eigenvalues[motion.eigenvalues.real.argmax()]
         mode = growing_mode(model, found.state, found.tow, worst)
         raise NoSteadyState(
-            f'{where}: the steady state is unstable, {mode} grows by a factor e in '
+            f'{where}: the steady state is unstable: {mode} grows by a factor e in '
             f'{1 / motion.growth:.0f} s',
             'unstable',
             remedy_command(model.gear, found.point),

@@ -1,4 +1,4 @@
-"""First guess of the gear's shape, and shifting of a known shape to other warp lengths."""
+"""First guess of the gear's shape, and a known shape shifted to other warp lengths."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -15,40 +15,40 @@ from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.linear.factor import factorised
 
-ATTACK = np.radians(20.0)
-LEAN = np.radians(14.0)
-DEPTH_SHARE, SPREAD_SHARE = 0.22, 0.16
-"""Depth and sideways reach of a board as shares of the warp length, roughly as gears tow."""
+FIRST_ATTACK = np.radians(20.0)
+FIRST_LEAN = np.radians(14.0)
+DEPTH_PER_WARP, REACH_PER_WARP = 0.22, 0.16
+"""Depth and sideways reach of a board per length of warp, typical of gears."""
 
-WIDEST = 0.95
-"""Share of warp and bridle to the side from which ships are too far apart for a first guess."""
+MAX_SIDEWAYS_FRACTION = 0.95
+"""Largest sideways part of warp and bridle for which ships of a pair are close enough."""
 
 COARSE_AROUND = (96, 48, 24)
 """Meshes around the mouth of the coarser nets whose shape is found first."""
 
-NEIGHBOURS = 12
-"""Nodes of the coarser net that say where one of the finer net lies."""
+INTERPOLATION_NODES = 12
+"""Nodes of the coarser net from which the place of a finer net's node is interpolated."""
 
 
 def first_guess(model: GearModel, tow: Tow, heading: float, *, turned: bool = False) -> State:
-    """First guess: straight warps, boards at a usual attitude, the net as built behind them.
+    """Return a first guess: straight warps, boards at a typical attitude, the net as built.
 
     Plates of a pair are on edge, or ``turned`` over.
     """
     lengths = tow.lengths
     half = 0.5 * model.gear.block_distance
-    depth = DEPTH_SHARE * lengths
+    depth = DEPTH_PER_WARP * lengths
     bridle = model.gear.behind_boards
-    reach, attack, lean = SPREAD_SHARE * lengths, ATTACK, LEAN
+    reach, attack, lean = REACH_PER_WARP * lengths, FIRST_ATTACK, FIRST_LEAN
     if model.paired:
-        # A line from either ship to its wing, on which the plate lies.
+        # The plate lies on the straight line from its ship to its wing.
         wing = abs(model.first_guess[model.layout.headrope[0], 1])
         share = (half - wing) / (lengths + bridle)
-        if share.max() > WIDEST:
+        if share.max() > MAX_SIDEWAYS_FRACTION:
             raise NoSteadyState(
-                f'ships {2 * half:g} m apart with {lengths.min():g} m of warp and bridles of '
-                f'{bridle:g} m: the net between them cannot be {2 * wing:.0f} m wide, expected '
-                'ships closer together or more warp'
+                f'ships {2 * half:g} m apart, {lengths.min():g} m of warp and bridles of '
+                f'{bridle:g} m: the net between the ships is {2 * wing:.0f} m wide and cannot be '
+                'reached; expected ships closer together or more warp'
             )
         reach = -share * lengths
         attack, lean = float(np.arctan2(-reach.mean(), lengths.mean())), np.pi * turned
@@ -71,20 +71,27 @@ def first_guess(model: GearModel, tow: Tow, heading: float, *, turned: bool = Fa
         start = starts[2 * k // len(layout.bridles)]
         nodes[line] = start + share[:, None] * (nodes[end] - start)
     turn = about_axis(2, heading)
-    port = about_axis(2, attack) @ about_axis(0, lean)
-    flip = np.array([1.0, -1.0, 1.0])
-    attitudes = np.stack([port, flip[:, None] * port * flip])
     return at_velocity(
         State(
             nodes=nodes @ turn.T,
             board_positions=boards @ turn.T,
-            board_rotations=turn @ attitudes,
+            board_rotations=turn @ attitudes(attack, 0.0, lean),
             node_velocities=np.zeros_like(nodes),
             board_velocities=np.zeros((2, 3)),
             board_rates=np.zeros((2, 3)),
         ),
         tow.block_velocities.mean(0),
     )
+
+
+def attitudes(yaw: float, pitch: float, roll: float) -> FloatArray:
+    """Return rotations (2, 3, 3) of both boards from angles of the port board, rad.
+
+    Yaw turns the leading edge outward, pitch is nose down, roll tips the outward normal up.
+    """
+    port = about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
+    flip = np.array([1.0, -1.0, 1.0])
+    return np.stack([port, flip[:, None] * port * flip])
 
 
 def _lay_sweep(model: GearModel, nodes: FloatArray, side: int, board: FloatArray) -> None:
@@ -99,7 +106,7 @@ def _lay_sweep(model: GearModel, nodes: FloatArray, side: int, board: FloatArray
 
 
 def coarser_model(model: GearModel) -> GearModel | None:
-    """The same gear with a coarser net, whose shape is found sooner; None when it has one."""
+    """Return the gear with the next coarser net, whose shape is found faster; None if none is."""
     coarser = [around for around in COARSE_AROUND if around < model.gear.netting.around]
     if not coarser:
         return None
@@ -120,10 +127,10 @@ def _coarse(gear: GearRecord, around: int) -> GearModel:
 
 
 def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:
-    """The shape of a coarser net as a guess for a finer one; warps and bridles are cut alike.
+    """Interpolate the shape of a coarser net as a guess for a finer one.
 
-    The net's displacement from the shape it was built in is a smooth function of the place
-    there, which is the same for both.
+    The displacement from the built shape is a smooth function of the built position, which both
+    nets share. Warps and bridles have the same nodes in both.
     """
     layout = coarse.layout
     built, fine = coarse.net_mesh.positions, model.net_mesh.positions
@@ -144,16 +151,16 @@ def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:
 
 @lru_cache(maxsize=4)
 def _interpolation(known: bytes, wanted: bytes) -> tuple[IntArray, FloatArray]:
-    """Nearest known places (n, k) of each wanted one, and their shares (n, k) in what lies there.
+    """Return the nearest known points (n, k) of each wanted one, and their weights (n, k).
 
-    Places come as the bytes of arrays (..., 3). Each wanted one has a local interpolant of its own,
-    a constant and radial functions -r.
+    Points come as the bytes of arrays (..., 3), which makes them hashable. Each wanted point has
+    its own local interpolant: a constant and radial basis functions -r.
     """
-    # Imported here: it takes long, and warm starts have no use for it.
+    # Imported here: the import takes long, and warm starts do not need it.
     from scipy.spatial import KDTree
 
     there, here = (np.frombuffer(places).reshape(-1, 3) for places in (known, wanted))
-    count = min(NEIGHBOURS, len(there))
+    count = min(INTERPOLATION_NODES, len(there))
     neighbours: IntArray = KDTree(there).query(here, count)[1].reshape(len(here), count)
     near = there[neighbours]
     matrix = np.ones((len(here), count + 1, count + 1))
@@ -166,7 +173,7 @@ def _interpolation(known: bytes, wanted: bytes) -> tuple[IntArray, FloatArray]:
 
 
 def at_velocity(state: State, velocity: FloatArray) -> State:
-    """The state with every part moving at one velocity (3,)."""
+    """Return the state with every part moving at one velocity (3,)."""
     return replace(
         state,
         node_velocities=np.tile(velocity, (len(state.nodes), 1)),
@@ -176,10 +183,10 @@ def at_velocity(state: State, velocity: FloatArray) -> State:
 
 
 def shifted_to(model: GearModel, state: State, old: Tow, new: Tow) -> State:
-    """A steady shape moved along its warps to other lengths.
+    """Move a steady shape along its warps to other lengths.
 
-    Without this a shorter warp is met by slack and the boards fall. Where one warp changes by
-    more than the other the shape changes too, at first along its tangent.
+    Otherwise a change would begin with slack or overstretched warps, and the boards would fall.
+    Where one warp changes by more than the other, the shape first changes along its tangent.
     """
     change = new.lengths - old.lengths
     uneven = change - change.mean()
@@ -199,7 +206,7 @@ def shifted_to(model: GearModel, state: State, old: Tow, new: Tow) -> State:
 
 
 def _tangent(model: GearModel, state: State, tow: Tow, change: FloatArray) -> FloatArray:
-    """Displacement (dof,) of a steady state, to first order, for a change of both lengths."""
+    """Return the first-order displacement (dof,) of a steady state for a change of both lengths."""
     longer = replace(tow, lengths=tow.lengths + 1j * STEP * change)
     push = forces(model, state, longer).imag / STEP
     stiffness = linearised(model, state, tow).stiffness

@@ -1,8 +1,8 @@
-"""Last states of a gear that is towed more and more slowly, and the reason why they end.
+"""Steady states followed to lower speeds, and the reason why they end.
 
-Where a search from nothing finds no steady state, one is found at a speed at which the gear does
-tow, and its branch is followed to the speed asked for. Either it arrives, or it ends on the way:
-in a fold, or with boards that lie over and have lost their hold.
+Where a cold start finds no steady state, one is found at a higher speed and its branch is followed
+to the wanted speed. It may end on the way: in a fold, or with boards that lie over and have lost
+their lift.
 """
 
 from dataclasses import replace
@@ -14,42 +14,32 @@ from trawl_ros.model.assembly import board_loads, forces
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.observables import lies_over, outward_normal_lift
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.cold_start import PRESSURE, bowed, cold_start
+from trawl_ros.solver.cold_start import BOW_PRESSURE_PA, bowed, cold_start
 from trawl_ros.solver.continuation import BranchPoint, branch
-from trawl_ros.solver.first_guess import ATTACK, LEAN, first_guess
-from trawl_ros.solver.growing_mode import growing_mode
+from trawl_ros.solver.first_guess import FIRST_ATTACK, FIRST_LEAN, first_guess
 from trawl_ros.solver.modes import linearised_motion
 from trawl_ros.solver.operating_point import OperatingPoint, remedy_command, steady_tow
-from trawl_ros.solver.relax import (
-    TOLERANCE,
-    WARM_LIMIT,
-    WARM_TIME_STEP,
-    relax,
-    without_attitude,
-)
-from trawl_ros.solver.stability import stability
+from trawl_ros.solver.relax import FORCE_TOLERANCE, relax, relax_warm, without_attitude
+from trawl_ros.solver.stability import growing_mode, stability
 
-USUAL = 2.1
-"""Speed (m/s) at which gears are towed, from which slower ones are followed."""
+TOWING_SPEED_M_S = 2.1
+"""Usual towing speed, from which slower states are followed."""
 
 FASTER = 1.2, 1.5
-"""Multiples of the speed asked for at which a state is sought besides."""
+"""Multiples of the wanted speed from which its state is followed otherwise."""
 
-STRIDE = 0.1
-"""Change of speed (m/s) that counts as one along the branch."""
+SPEED_SCALE_M_S = 0.1
+"""Change of speed that counts as one step along the branch."""
 
-MOST = 60
+MAX_BRANCH_POINTS = 60
 """Points along a branch after which it is given up."""
 
-HELD_TOLERANCE = 1000.0
-"""Force (N) left at which the shape of a gear with held boards is good enough."""
+HELD_FORCE_N, HELD_ITERATIONS = 1000.0, 300
+"""Force left at which the shape with held boards is accepted, and iterations until it is given up:
+boards with forces far from those of the first guess need many."""
 
-HELD_LIMIT = 300
-"""Iterations after which such a shape is given up: boards whose forces are far from those of the
-first guess have a long way to go."""
-
-AT_REST = 1e-3
-"""Point (1/s) around which the eigenvalue that vanishes in a fold is sought."""
+FOLD_SHIFT = 1e-3
+"""Shift (1/s) near the eigenvalue that vanishes in a fold."""
 
 
 def followed(
@@ -63,64 +53,61 @@ def followed(
     Parameters
     ----------
     where
-        The operating point in words, with which messages begin.
+        The operating point in words, at the beginning of messages.
     known
-        Shape at another operating point; if that is the same but for a faster tow, its branch is
-        followed rather than one from a cold start.
+        Shape at another operating point. If it differs only by a higher speed, its branch is
+        followed instead of one from a cold start.
 
     Raises
     ------
     NoSteadyState
-        If the branch ends before: with the last solved speed and what ends it.
+        If the branch ends before the point: with the last solved speed and the reason.
     """
     if known is not None and point == replace(known[0], speed=point.speed):
         speed = known[0].speed
-        state, _, residual = relax(
-            model,
-            known[1],
-            steady_tow(model, known[0]),
-            tolerance=TOLERANCE,
-            time_step=WARM_TIME_STEP,
-            limit=WARM_LIMIT,
-        )
-        if speed > point.speed and residual <= TOLERANCE and not lies_over(model, state):
+        state, _, residual = relax_warm(model, known[1], steady_tow(model, known[0]))
+        if speed > point.speed and residual <= FORCE_TOLERANCE and not lies_over(model, state):
             return _followed(model, point, where, speed, state)
     tried = []
-    for speed in sorted({max(USUAL, FASTER[0] * point.speed), FASTER[1] * point.speed}):
+    for speed in sorted({max(TOWING_SPEED_M_S, FASTER[0] * point.speed), FASTER[1] * point.speed}):
         tow = steady_tow(model, replace(point, speed=speed))
         state, _, residual = cold_start(model, point.heading, tow)
-        if residual <= TOLERANCE and not lies_over(model, state):
+        if residual <= FORCE_TOLERANCE and not lies_over(model, state):
             return _followed(model, point, where, speed, state)
         tried.append(f'{speed:.2g}')
     if not model.paired and (unbalanced := _imbalance(model, point)):
         speeds = ' or '.join(tried)
         raise NoSteadyState(
-            f'{where}: boards do not stay upright, nor at {speeds} m/s: {unbalanced}', 'no balance'
+            f'{where}: the boards do not stay upright, and neither at {speeds} m/s; {unbalanced}',
+            'no balance',
         )
-    upright = '' if model.paired else ' one with upright boards'
-    raise NoSteadyState(f'{where}: no steady state found, nor{upright} at {" or ".join(tried)} m/s')
+    upright = '' if model.paired else ' with upright boards'
+    raise NoSteadyState(
+        f'{where}: no steady state found, and none{upright} at {" or ".join(tried)} m/s'
+    )
 
 
 def _imbalance(model: GearModel, point: OperatingPoint) -> str:
-    """Moments that turn boards which are held upright, in words; '' where no shape is found."""
+    """Describe the moments on boards that are held upright; '' where no shape is found."""
     tow = steady_tow(model, point)
-    loose = bowed(model, PRESSURE)
+    loose = bowed(model, BOW_PRESSURE_PA)
     state, _, residual = relax(
         loose,
         first_guess(model, tow, point.heading),
         tow,
-        tolerance=HELD_TOLERANCE,
+        tolerance=HELD_FORCE_N,
         time_step=2.0,
         free=without_attitude(model),
-        limit=HELD_LIMIT,
+        limit=HELD_ITERATIONS,
     )
-    if residual > HELD_TOLERANCE:
+    if residual > HELD_FORCE_N:
         return ''
     port = forces(loose, state, tow)[3 * model.nodes :].reshape(2, 6)[0]
     roll, pitch, yaw = state.board_rotations[0].T @ port[3:] / 1000.0
     return (
-        f'held at {np.degrees(ATTACK):.0f}° of attack and {np.degrees(LEAN):.0f}° of lean each is '
-        f'turned by {roll:.1f} kN m upward, {pitch:.1f} kN m nose down and {yaw:.1f} kN m outward'
+        f'moments on each board, held at {np.degrees(FIRST_ATTACK):.0f}° of attack and '
+        f'{np.degrees(FIRST_LEAN):.0f}° of lean: {roll:.1f} kN m upward, {pitch:.1f} kN m nose '
+        f'down and {yaw:.1f} kN m outward'
     )
 
 
@@ -131,29 +118,22 @@ def _followed(
         return model, steady_tow(model, replace(point, speed=value))
 
     first = last = None
-    for count, here in enumerate(branch(family, speed, state, scale=-STRIDE)):
+    for count, here in enumerate(branch(family, speed, state, scale=-SPEED_SCALE_M_S)):
         first, last, before = first or here, here, last
         if here.value <= point.speed:
             _, tow = family(point.speed)
-            arrived, _, residual = relax(
-                model,
-                here.state,
-                tow,
-                tolerance=TOLERANCE,
-                time_step=WARM_TIME_STEP,
-                limit=WARM_LIMIT,
-            )
-            if residual > TOLERANCE:
+            arrived, _, residual = relax_warm(model, here.state, tow)
+            if residual > FORCE_TOLERANCE:
                 break
             return arrived
         if here.rate < 0.0 and before is not None:
             slow, _ = linearised_motion(model, before.state, before.tow).nearest(
-                AT_REST, 1, tolerance=1e-3
+                FOLD_SHIFT, 1, tolerance=1e-3
             )
             least = slow[0].real if len(slow) else np.nan
             raise NoSteadyState(
                 f'{where}: no steady state below {before.value:.3f} m/s, where the branch from '
-                f'{speed:.3g} m/s folds back, smallest eigenvalue {least:.2g} 1/s',
+                f'{speed:.3g} m/s folds back; its smallest eigenvalue is {least:.2g} 1/s',
                 'fold',
             )
         if lies_over(model, here.state):
@@ -162,22 +142,22 @@ def _followed(
                 'lift lost',
                 remedy_command(model.gear, point),
             )
-        if count == MOST:
+        if count == MAX_BRANCH_POINTS:
             break
     assert last is not None
     raise NoSteadyState(
-        f'{where}: no steady state found, the branch from {speed:.3g} m/s was followed to '
+        f'{where}: no steady state found; the branch from {speed:.3g} m/s was followed to '
         f'{last.value:.3f} m/s'
     )
 
 
 def _lift_lost(first: BranchPoint, last: BranchPoint) -> str:
-    """Balance of the boards' forces where they lie over, beside that of the faster tow."""
+    """Compare the boards' forces where they lie over with those of the faster tow."""
     lean = np.degrees(np.arcsin(np.abs(outward_normal_lift(last.state)).max()))
     outward = [_outward(first), _outward(last)]
     sentence = (
-        f'boards lie over: at {last.value:.3f} m/s they lean by {lean:.0f}° and push outward with '
-        f'{outward[1]:.1f} kN, at {first.value:.3g} m/s with {outward[0]:.1f} kN'
+        f'the boards lie over: at {last.value:.3f} m/s they lean by {lean:.0f}° and push outward '
+        f'with {outward[1]:.1f} kN, compared with {outward[0]:.1f} kN at {first.value:.3g} m/s'
     )
     motion = stability(last.model, last.state, last.tow)
     if not motion.stable:
@@ -188,7 +168,7 @@ def _lift_lost(first: BranchPoint, last: BranchPoint) -> str:
 
 
 def _outward(here: BranchPoint) -> float:
-    """Mean force (kN) with which water and weight push the boards away from the net's middle."""
+    """Return the mean outward force (kN) of water and weight on the boards."""
     ahead = here.tow.block_velocities.mean(0)
     to_port = np.array([-ahead[1], ahead[0], 0.0]) / np.hypot(ahead[0], ahead[1])
     loads = board_loads(here.model, here.state)[:, :3]

@@ -1,6 +1,6 @@
-"""Likeness of two gears, as far as forces and observables ask: what is the same is left out.
+"""Equality of two gear models in the properties on which forces, observables or mass depend.
 
-An effect of an instrument changes no gear at all, one on a rope no board.
+It saves work: an effect of an instrument changes no gear, and one on a rope changes no board.
 """
 
 from collections.abc import Sequence
@@ -11,24 +11,24 @@ import numpy as np
 from trawl_ros.model.board import Board
 from trawl_ros.model.gear_model import GearModel
 
-NO_FORCE = frozenset({'gear', 'first_guess'})
-"""Attributes of a gear model of which no force is made, but for the segments of a warp."""
+FORCELESS_FIELDS = frozenset({'gear', 'first_guess'})
+"""Fields of a gear model on which no force depends, apart from the segments of a warp."""
 
 
 def same_forces(one: GearModel, other: GearModel) -> bool:
-    """True if two gears have the same forces in any state."""
+    """Return True if two gears have the same forces in every state."""
     return one is other or (
         one.warp_segments == other.warp_segments
         and all(
             _same(getattr(one, field.name), getattr(other, field.name))
             for field in fields(GearModel)
-            if field.name not in NO_FORCE
+            if field.name not in FORCELESS_FIELDS
         )
     )
 
 
 def same_observables(one: GearModel, other: GearModel) -> bool:
-    """True if two gears have the same observables in any state."""
+    """Return True if two gears have the same observables in every state."""
     return (
         _same(one.water, other.water)
         and _same_middles(one.board, other.board)
@@ -39,7 +39,7 @@ def same_observables(one: GearModel, other: GearModel) -> bool:
 
 
 def same_mass(one: GearModel, other: GearModel) -> bool:
-    """True if two gears surely have the same mass in any state: its parts are shared."""
+    """Return True if two gears share all arrays of their mass, so that it is equal."""
     whole = 'ends', 'rest', 'warp_side', 'lump_mass', 'lump_added', 'kite', 'layout', 'pattern'
     return (
         _shared(one, other, whole)
@@ -52,15 +52,13 @@ def same_mass(one: GearModel, other: GearModel) -> bool:
 
 
 def _same_middles(one: Board, other: Board) -> bool:
-    """True if two boards have the same middles; these are worked out where what they are made of
-    is another.
-    """
+    """Return True if two boards have the same middles; compute these only if needed."""
     made_of = 'points', 'installation', 'rerigged'
     return _shared(one, other, made_of) or _same(one.middles, other.middles)
 
 
 def _same_top_of_warps(one: GearModel, other: GearModel) -> bool:
-    """True if all is the same of which tensions at the blocks and angles of the warps are made."""
+    """Return True if tensions at the blocks and angles of the warps are the same."""
     made_of = 'warp_segments', 'warp_side', 'ends', 'rest', 'bars', 'layout'
     return _shared(one, other, made_of) or _same(_top_of_warps(one), _top_of_warps(other))
 
@@ -72,12 +70,12 @@ def _top_of_warps(model: GearModel) -> tuple[object, ...]:
 
 
 def _shared(one: object, other: object, names: Sequence[str]) -> bool:
-    """True if two records share the very objects of these names."""
+    """Return True if two records share the same objects in these fields."""
     return all(getattr(one, name) is getattr(other, name) for name in names)
 
 
 def _same(one: object, other: object) -> bool:
-    """True if two values are surely the same, in all their attributes."""
+    """Return True if two values are equal in all their attributes."""
     if one is other:
         return True
     if type(one) is not type(other):

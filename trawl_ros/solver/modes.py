@@ -1,21 +1,106 @@
-"""Modes of the linearised motion M ẍ + C ẋ + K x = 0, by shift and invert."""
+"""Modes of the linearised motion M ẍ + C ẋ + K x = 0, by shift-invert and Arnoldi's method."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
+from scipy.linalg import get_blas_funcs
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.model.assembly import linearised, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.pattern import SparsityPattern
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.linear.arnoldi import RitzPairs, ritz_pairs
 from trawl_ros.solver.linear.factor import Factor, factorised
 
-MOST = 60
-"""Vectors among which modes are sought: with the default gear, six take 24 of them."""
+MAX_VECTORS = 60
+"""Largest number of Arnoldi vectors; six modes of the default gear take 24."""
+
+FIRST_CHECK, CHECK_EVERY = 12, 4
+"""Number of vectors before the first check of the eigenvalues, and between checks."""
+
+REORTHOGONALISE_BELOW = 1e-3
+"""A vector is orthogonalised again if less than this fraction of it is left."""
+
+EXHAUSTED_BELOW = 1e-12
+"""The Krylov space is complete if less than this fraction of a new vector is left."""
+
+
+@dataclass(frozen=True)
+class RitzPairs:
+    """Ritz pairs of an operator, that is approximate eigenvalues and eigenvectors.
+
+    Attributes
+    ----------
+    values : (k,) array
+        Eigenvalues, the largest first.
+    residuals : (k,) array
+        Residuals relative to the eigenvalues.
+    shares : (k, k) array
+        Eigenvectors in the basis.
+    basis : (k, n) array
+        Orthonormal vectors of the Krylov space.
+    """
+
+    values: FloatArray
+    residuals: FloatArray
+    shares: FloatArray
+    basis: FloatArray
+
+    def vectors(self, chosen: BoolArray) -> FloatArray:
+        """Return the eigenvectors (n, m) of chosen pairs."""
+        found: FloatArray = self.basis.T @ self.shares[:, chosen]
+        return found
+
+
+def ritz_pairs(
+    apply: Callable[[FloatArray], FloatArray],
+    start: FloatArray,
+    enough: Callable[[FloatArray, FloatArray], bool],
+    most: int,
+) -> RitzPairs:
+    """Find the largest eigenvalues of an operator by Arnoldi's method, without restarts.
+
+    Parameters
+    ----------
+    apply
+        Product with a vector (n,), real or complex as ``start``.
+    start
+        First vector (n,).
+    enough
+        Function of values (k,) and their relative residuals (k,); True ends the search.
+    most
+        Largest number of vectors.
+    """
+    basis, upper = (
+        np.empty((most + 1, len(start)), start.dtype),
+        np.zeros((most, most), start.dtype),
+    )
+    basis[0] = start / np.linalg.norm(start)
+    gemv = get_blas_funcs('gemv', (basis,))
+    for k in range(1, most + 1):
+        new, earlier = apply(basis[k - 1]), basis[:k].T
+        last, left = 0.0, float(np.linalg.norm(new))
+        whole = left
+        # Classical Gram-Schmidt; a second pass only after cancellation (Daniel et al. 1976).
+        while last == 0.0 or EXHAUSTED_BELOW * whole < left < REORTHOGONALISE_BELOW * last:
+            share = gemv(1.0, earlier, new, trans=2)
+            new = gemv(-1.0, earlier, share, beta=1.0, y=new, overwrite_y=True)
+            upper[:k, k - 1] += share
+            last, left = left, float(np.linalg.norm(new))
+        exhausted = left <= EXHAUSTED_BELOW * whole
+        if exhausted or k == most or (k >= FIRST_CHECK and (k - FIRST_CHECK) % CHECK_EVERY == 0):
+            values, shares = np.linalg.eig(upper[:k, :k])
+            order = np.argsort(-np.abs(values))
+            values, shares = values[order], shares[:, order]
+            # ‖A x - λ x‖ = h(k+1, k) |y(k)| for the Ritz vector x = V y.
+            residuals = left * np.abs(shares[-1]) / np.abs(values)
+            if exhausted or k == most or enough(values, residuals):
+                return RitzPairs(values, residuals, shares, basis[:k])
+        upper[k, k - 1] = left
+        basis[k] = new / left
+    raise AssertionError
 
 
 @dataclass(frozen=True)
@@ -42,11 +127,11 @@ class LinearisedMotion:
         shift
             Point s, 1/s; with a real one the search is real.
         number
-            Of modes to look for.
+            Number of modes to look for.
         tolerance
-            Relative to their distance from the shift.
+            Error of an eigenvalue relative to its distance from the shift.
         factor
-            Of s² M + s C + K, where that is known.
+            Factors of s² M + s C + K, if they are known.
 
         Returns
         -------
@@ -67,17 +152,18 @@ class LinearisedMotion:
         enough: Callable[[FloatArray, FloatArray], bool],
         factor: Factor | None = None,
     ) -> RitzPairs:
-        """Search the eigenvalues λ around a shift s, as 1 / (λ - s), until those found (k,), the
-        nearest first, and their errors (k,) relative to their distances from it are enough.
+        """Search the eigenvalues λ nearest to a shift s, as the largest 1 / (λ - s).
 
-        One factorisation of s² M + s C + K serves, half the size of the first-order form: with
-        y = (x, ẋ), (A - s B)⁻¹ B y follows from it by substitution.
+        The search ends when ``enough`` accepts the eigenvalues (k,), the nearest first, and their
+        errors (k,) relative to their distances from the shift. One factorisation of
+        s² M + s C + K serves, half the size of the first-order form: with y = (x, ẋ),
+        (A - s B)⁻¹ B y follows from it by substitution.
         """
 
         def back(inverted: FloatArray) -> FloatArray:
             return cast(FloatArray, shift + 1.0 / inverted)
 
-        # All below takes a complex shift as it takes a real one.
+        # A real shift keeps the whole search real, which takes half the time.
         s = shift.real if shift.imag == 0.0 else cast(float, shift)
         n, times = self.pattern.dof, self.pattern.times
         slowed = s * self.mass + self.damping
@@ -95,7 +181,9 @@ class LinearisedMotion:
             return new
 
         start = np.concatenate([np.ones(n), np.zeros(n)]).astype(factor.data.dtype)
-        found = ritz_pairs(apply, start, lambda some, errors: enough(back(some), errors), MOST)
+        found = ritz_pairs(
+            apply, start, lambda some, errors: enough(back(some), errors), MAX_VECTORS
+        )
         return replace(found, values=back(found.values))
 
 

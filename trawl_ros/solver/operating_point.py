@@ -1,4 +1,4 @@
-"""Operating point of a steady state, and the command for what would make one usable."""
+"""Operating point of a steady state, and the command that advises on a refused one."""
 
 import re
 from dataclasses import dataclass
@@ -24,14 +24,14 @@ class OperatingPoint:
 
 
 def block_offsets(model: GearModel, heading: float) -> FloatArray:
-    """Positions (2, 3) of the towing blocks from midway between them, port first, m."""
+    """Return positions (2, 3) of the towing blocks from midway between them, port first, m."""
     to_port = np.array([-np.sin(heading), np.cos(heading), 0.0])
     half = 0.5 * model.gear.block_distance
     return np.stack([half * to_port, -half * to_port])
 
 
 def steady_tow(model: GearModel, point: OperatingPoint) -> Tow:
-    """Towing boundary of a steady tow at an operating point; the ship is at the origin."""
+    """Return the towing boundary of a steady tow; the ship is at the origin."""
     ahead = np.array([np.cos(point.heading), np.sin(point.heading), 0.0])
     velocity = point.speed * ahead + model.water.surface_current
     return Tow(
@@ -43,14 +43,14 @@ def steady_tow(model: GearModel, point: OperatingPoint) -> Tow:
 
 
 def remedy_command(gear: GearRecord, point: OperatingPoint) -> str:
-    """Sentence that names the command, for the mean length of the warps.
+    """Return the sentence that names the command, for the mean length of the warps.
 
-    A gear of the package is named; of others the record does not know its file.
+    A gear of the package is named. For another gear the record does not know its file.
     """
     warp = 0.5 * (point.port_length + point.starboard_length)
     name, file = gear.name, ''
     if not _packaged(name):
-        name, file = 'GEAR', ", with the gear's file for GEAR,"
+        name, file = 'GEAR', ' (GEAR is your gear file)'
     command = f'trawl gear state {name} --warp {warp:g} --speed {point.speed:g}'
     return f'`{command}`{file} computes what would make it usable'
 

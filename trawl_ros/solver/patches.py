@@ -1,10 +1,9 @@
-"""Nonlinear elimination of patches: Newton's method on a few nodes, all others held.
+"""Nonlinear elimination of patches: Newton's method on a few nodes while all others are held.
 
-Where bars of netting flip between slack and taut, the iterations of an implicit step end with
-corrections of a few nodes, and each flip asks for another matrix of the whole gear. These nodes are
-brought into balance by themselves, with a small matrix of their own, before the next iteration
-(nonlinear elimination: Lanzkron, Rose and Wilkes 1997; Cai and Li 2011). Forces and masses are
-those of the whole gear, whose iterations alone decide when the search ends.
+Where bars of netting flip between slack and taut, only a few nodes still move at the end of an
+implicit step, yet each flip needs a new matrix of the whole gear. These nodes are balanced first
+with a small matrix of their own (nonlinear elimination: Lanzkron, Rose and Wilkes 1997; Cai and Li
+2011). Forces and masses are those of the whole gear, and only its residual ends the iteration.
 """
 
 from dataclasses import dataclass
@@ -22,38 +21,62 @@ from trawl_ros.model.lump_pass import (
     fill_lump_slopes,
 )
 from trawl_ros.model.state import State, Tow
-from trawl_ros.solver.frontal.one_front import dense_solution
-
-LEAST_NODES = 2000
-"""Gears of fewer nodes have no patches: theirs would take as long as the matrices they save."""
-
-MOST, PART = 100, 1 / 40
-"""Nodes of a patch at most, by number and as a part of all: its matrix is dense."""
-
-SHARES = 0.03, 0.2
-"""A patch takes the nodes whose correction is larger than this share of the largest; the second
-share where the first would take too many."""
-
-ITERATIONS = 20
-"""Iterations after which a patch is left as it was; as a rule it needs three to eight."""
-
-LIMIT = 0.2
-"""Largest correction of an iteration, m."""
-
-BOLD = 7
-"""Iterations without a line search, which would creep where the netting buckles."""
-
-OVERSHOT, LEAST_SHARE = 0.8, 0.1
-"""From this share of the slope before it, the slope after an iteration asks for a shorter one, of
-this share of it at least."""
+from trawl_ros.solver.linear.fronts import dense_solution
 
 NO_PATCH = np.empty(0, int)
 
 
 @dataclass(frozen=True)
+class PatchOptions:
+    """Options of the elimination of patches.
+
+    Attributes
+    ----------
+    min_gear_nodes
+        Smaller gears have no patches: a patch would cost as much as the matrix that it saves.
+    max_nodes, max_fraction
+        Largest patch, in nodes and as a fraction of all nodes: its matrix is dense.
+    correction_ratios
+        A node joins the patch if its correction exceeds this ratio to the largest one. The next
+        ratio is tried where the patch would be too large.
+    iterations
+        Iterations after which a patch is left as it was; most need three to eight.
+    max_correction_m
+        Largest correction of an iteration, m.
+    full_newton_steps
+        First iterations without a line search, which would stall where the netting buckles.
+    max_slope_ratio
+        The line search shortens a step if the slope after it exceeds this ratio to that before.
+    min_step_fraction
+        Smallest fraction to which it shortens a step.
+    """
+
+    min_gear_nodes: int = 2000
+    max_nodes: int = 100
+    max_fraction: float = 1 / 40
+    correction_ratios: tuple[float, ...] = (0.03, 0.2)
+    iterations: int = 20
+    max_correction_m: float = 0.2
+    full_newton_steps: int = 7
+    max_slope_ratio: float = 0.8
+    min_step_fraction: float = 0.1
+
+
+PATCH_OPTIONS = PatchOptions()
+
+
+@dataclass(frozen=True)
 class ImplicitStep:
-    """Implicit step: inertia as data on the pattern, change of the new place (s²) and velocity (s)
-    by the new acceleration, and the correction (m) at which it is done.
+    """Implicit time step.
+
+    Attributes
+    ----------
+    inertia
+        Mass matrix as data on the pattern.
+    by_position, by_velocity
+        Change of the new position (s²) and velocity (s) per new acceleration.
+    enough
+        Correction (m) at which the step is converged.
     """
 
     inertia: FloatArray
@@ -63,22 +86,28 @@ class ImplicitStep:
 
 
 def grown_patch(
-    model: GearModel, patch: IntArray, correction: FloatArray, enough: float
+    model: GearModel,
+    patch: IntArray,
+    correction: FloatArray,
+    enough: float,
+    options: PatchOptions = PATCH_OPTIONS,
 ) -> IntArray:
-    """Patch (k,) with the nodes to which a correction (dof,) is confined; none where they are too
-    many. Nodes of the kite, and those with forces of their own, are in no patch.
+    """Add to a patch (k,) the nodes to which a correction (dof,) is confined.
+
+    The patch is empty where they are too many. Nodes of the kite, and those with forces of their
+    own, are in no patch.
     """
     n = model.nodes
-    if n < LEAST_NODES:
+    if n < options.min_gear_nodes:
         return NO_PATCH
     moved = np.abs(correction[: 3 * n]).reshape(n, 3).max(axis=1)
     largest = float(moved.max())
     moved[model.layout.kite.nodes] = 0.0
     for more in model.node_forces:
         moved[more.nodes] = 0.0
-    most = min(MOST, PART * n)
-    for share in SHARES:
-        grown = np.union1d(patch, np.flatnonzero(moved > max(share * largest, enough)))
+    most = min(options.max_nodes, options.max_fraction * n)
+    for ratio in options.correction_ratios:
+        grown = np.union1d(patch, np.flatnonzero(moved > max(ratio * largest, enough)))
         if len(grown) <= most:
             return grown
     return NO_PATCH
@@ -91,8 +120,9 @@ def balanced(
     step: ImplicitStep,
     acceleration: FloatArray,
     patch: IntArray,
+    options: PatchOptions = PATCH_OPTIONS,
 ) -> FloatArray:
-    """Acceleration (dof,) with that of a patch in balance, all others held.
+    """Balance the forces on a patch while all other nodes are held.
 
     Parameters
     ----------
@@ -102,27 +132,32 @@ def balanced(
         State at the end of the step with an acceleration (dof,) there.
     patch
         Nodes (k,).
+    options
+        Limits of the iteration.
 
     Returns
     -------
     (dof,) array
-        The acceleration as given, where the patch comes to no balance.
+        Acceleration with the patch in balance, or as given where none is found.
     """
     nodes = _PatchForces.of(model, state, tow, step, patch)
     new = acceleration[: 3 * model.nodes].reshape(-1, 3)[patch]
     move, slope = np.zeros_like(new), np.inf
-    for iteration in range(ITERATIONS):
+    for iteration in range(options.iterations):
         left, matrix = nodes.linearised(new)
         there = float((move * left).sum())
-        if iteration >= BOLD and abs(there) > OVERSHOT * abs(slope):
-            share = min(max(slope / (slope - there), LEAST_SHARE), 0.5)
+        # The slope of the energy along the step: secant line search where it overshot.
+        overshot = abs(there) > options.max_slope_ratio * abs(slope)
+        if iteration >= options.full_newton_steps and overshot:
+            share = min(max(slope / (slope - there), options.min_step_fraction), 0.5)
             new = nodes.moved(new, (share - 1.0) * move)
             move = share * move
             continue
         solution = dense_solution(matrix, left.ravel())
         if solution is None or not np.isfinite(size := float(np.abs(solution).max())):
             break
-        move = solution.reshape(-1, 3) * min(1.0, LIMIT / max(size, LIMIT))
+        limit = options.max_correction_m
+        move = solution.reshape(-1, 3) * min(1.0, limit / max(size, limit))
         slope = float((move * left).sum())
         new = nodes.moved(new, move)
         if size < 0.1 * step.enough:
@@ -134,9 +169,11 @@ def balanced(
 
 @dataclass(frozen=True)
 class _PatchForces:
-    """Forces on a patch: places and velocities (p, 3) of all points, of which it moves its own,
-    its ``bars`` (b,), the ``places`` (b, 2) of their ends in the patch, -1 where they are not in
-    it, and the ``masses`` (k, 3, 3) of its nodes.
+    """Forces on a patch.
+
+    ``x`` and ``v`` (p, 3) are positions and velocities of all points, of which only its own move.
+    ``bars`` (b,) touch the patch, ``places`` (b, 2) are their ends in it, -1 for ends outside, and
+    ``masses`` (k, 3, 3) are those of its nodes.
     """
 
     model: GearModel
@@ -165,7 +202,7 @@ class _PatchForces:
         )
 
     def moved(self, new: FloatArray, move: FloatArray) -> FloatArray:
-        """Move the patch by (k, 3) m, and return its acceleration (k, 3) after that."""
+        """Move the patch by (k, 3) m and return its new acceleration (k, 3)."""
         step = self.step
         self.x[self.patch] += move
         self.v[self.patch] += move * (step.by_velocity / step.by_position)
@@ -173,8 +210,9 @@ class _PatchForces:
         return moved
 
     def linearised(self, new: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Forces (k, 3) that are left over at an acceleration (k, 3), and the matrix (3 k, 3 k)
-        of their derivatives by the places at the end of the step.
+        """Return the residual (k, 3) at an acceleration (k, 3) and its Jacobian (3 k, 3 k).
+
+        Derivatives are by the positions at the end of the step, with the sign of K.
         """
         model, patch, step = self.model, self.patch, self.step
         total, nothing = np.zeros_like(self.x), np.empty(0)
@@ -196,7 +234,7 @@ class _PatchForces:
             c,
             np.empty((len(self.bars), 3)),
         )
-        # Their slopes are small beside those of bars, and left out here.
+        # Derivatives of sheets are small compared with those of bars; Newton does without them.
         add_sheet_forces(self.x, self.v, *sheets_of(model), water, total)
         here = self.x[patch], self.v[patch]
         force, (own, slowed) = np.empty_like(new), np.empty((2, len(patch), 3, 3))

@@ -1,6 +1,7 @@
 """Predictions of sensor readings in steady towing, with their derivatives, for identification.
 
-The gear may have effects beyond the model, whose strengths may be asked for along with the board.
+The gear may have effects beyond the model. Their values can be estimated along with the board's
+coefficients.
 """
 
 from collections.abc import Sequence
@@ -27,10 +28,16 @@ ANYWHERE = Situation((0.0, 0.0, 0.0))
 class Prediction:
     """Predicted readings of a window with their derivatives.
 
-    ``values`` (n_observables,) as sensors show them and ``jacobian`` (n_observables, 15 + m) by
-    `PARAMETERS`, the m values of free effects standing behind the coefficients; ``slow``
-    (n_observables,) is how the gear comes to rest, per metre of net depth; ``state`` is what the
-    next prediction nearby may start from.
+    Attributes
+    ----------
+    values : (n_observables,) array
+        Readings as sensors show them.
+    jacobian : (n_observables, 15 + m) array
+        Derivatives by `PARAMETERS`, with the m values of free effects after the coefficients.
+    slow : (n_observables,) array
+        Shape of the slowest mode, per metre of net depth.
+    state
+        Equilibrium from which the next prediction nearby can start.
     """
 
     values: FloatArray
@@ -60,22 +67,22 @@ class TowStretch(Protocol):
 
 @dataclass(frozen=True)
 class Predictor:
-    """The equilibrium model of a gear as a function of coefficients, operating point and effects.
+    """Equilibrium model of a gear as a function of coefficients, operating point and effects.
 
     Attributes
     ----------
     model
         The gear without effects.
     fixed
-        Effects that are there with values that are known.
+        Effects that act with known values.
     free
-        Effects whose values stand behind the twelve coefficients.
+        Effects whose values follow the twelve coefficients.
     at
-        The situation it predicts for, but for warp lengths and speed.
+        Situation of the prediction, except for warp lengths and speed.
     without
-        Tows in which the free effects are not there.
+        Tows in which the free effects do not act.
     new
-        Names of fixed effects that are not there in these tows either.
+        Names of fixed effects that do not act in these tows either.
     absent
         True in the predictor of one of these tows.
     """
@@ -92,7 +99,7 @@ class Predictor:
     )
 
     def acting(self, coefficients: FloatArray) -> EffectSet:
-        """Effect set with the values behind the coefficients."""
+        """Return the effect set with the values that follow the coefficients."""
         there = self.fixed.without(self.new) if self.absent else self.fixed
         place = len(COEFFICIENTS)
         for effect in self.free:
@@ -103,32 +110,32 @@ class Predictor:
         return there
 
     def in_window(self, window: TowStretch) -> 'Predictor':
-        """Predictor for a window of steady towing; itself where no effect depends on the window."""
+        """Return the predictor for a window; itself if there are no effects."""
         return self.situated(window) if self.fixed or self.free else self
 
     def situated(self, window: TowStretch) -> 'Predictor':
-        """Predictor in the situation of a window of steady towing."""
+        """Return the predictor in the situation of a window of steady towing."""
         at = Situation((0.0, 0.0, 0.0), sense=window.sense, hours=window.hours)
         return replace(self, at=at, absent=window.tow in self.without)
 
     def gear(self, coefficients: FloatArray, inputs: FloatArray) -> GearModel:
-        """Gear model with its effects, where counters and log show ``inputs`` (3,)."""
+        """Return the gear model with its effects, where counters and log show ``inputs`` (3,)."""
         board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
         return self.acting(coefficients).gear(board, self._situation(inputs))
 
     def with_net(self, drag: float, weight: float) -> 'Predictor':
-        """Predictor of a gear whose net has this many times the drag and weight in water."""
+        """Return the predictor with these factors on drag and weight in water of the net."""
         return replace(self, model=self.model.with_net(drag, weight))
 
     def by_net(
         self, coefficients: FloatArray, inputs: FloatArray, found: Equilibrium
     ) -> FloatArray:
-        """Derivatives (n_observables, 2) by factors on drag and weight in water of the net.
+        """Return derivatives (n_observables, 2) by factors on drag and weight in water of the net.
 
         Parameters
         ----------
         coefficients, inputs, found
-            Of a prediction: what it was asked with, and its steady state.
+            Arguments of a prediction, and its steady state.
         """
         acting = self.acting(coefficients)
         by_net = net_sensitivities(self.gear(coefficients, inputs), found)
@@ -153,9 +160,9 @@ class Predictor:
         coefficients : (12 + m,) array
             In the order of `COEFFICIENTS`, and the values of the free effects.
         port_length, starboard_length, speed
-            As counters (m) and log (m/s) show them.
+            Warp lengths as counters show them (m), and speed as the log shows it (m/s).
         start
-            The ``state`` of an earlier prediction nearby; a cold start is made without one only.
+            ``state`` of an earlier prediction nearby; without it a cold start is made.
 
         Raises
         ------
@@ -166,7 +173,7 @@ class Predictor:
         last = self._last.pop(question, None)
         self._last.clear()
         if last is not None:
-            # A window is looked at before it is used, which need not be solved for twice.
+            # A window is checked before it is used; do not solve it twice.
             return last
         inputs = np.array([port_length, starboard_length, speed])
         at, acting = self._situation(inputs), self.acting(coefficients)
@@ -197,16 +204,16 @@ class Predictor:
         found: Equilibrium,
         wanted: Sequence[ActiveEffect],
     ) -> FloatArray:
-        """Signatures of effects: changes of the readings (n_observables, m) per unit.
+        """Return signatures of effects: changes of the readings (n_observables, m) per unit.
 
         Parameters
         ----------
         coefficients, inputs
-            The prediction's (12,), and warp lengths and speed (3,).
+            Coefficients (12,), and warp lengths and speed (3,) of a prediction.
         found
-            Its state.
+            Its equilibrium.
         wanted
-            The effects.
+            Effects whose signatures are wanted.
         """
         at, acting = self._situation(inputs), self.acting(coefficients)
         board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])

@@ -1,8 +1,9 @@
 """Newton with pseudo-transient continuation.
 
 Each step is one implicit Euler step from rest, (M/τ² + C/τ + K) δ = F, with a time step τ that
-grows while steps stay small; at τ = ∞ it is Newton's. Real mass and drag let the gear drift to
-a state it would also reach at sea, rather than to any root near the start.
+grows while steps stay small; at τ = ∞ it is Newton's (switched evolution relaxation: Mulder and van
+Leer 1985). Real mass and drag lead the gear to a state that it would also reach at sea, rather than
+to any root near the start.
 """
 
 import numpy as np
@@ -13,33 +14,27 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.linear.factor import Factor, factorised
 
-TOLERANCE = 1e-4
+FORCE_TOLERANCE = 1e-4
 """Largest force (N) or moment (N m) left at a root; the last Newton step goes far below."""
 
-LIMIT_METRES, LIMIT_RADIANS = 10.0, 0.1
+MAX_STEP_M, MAX_STEP_RAD = 10.0, 0.1
 """Largest step of a node or board, and of a board's attitude."""
 
-HEAVY = 1e2
-"""Time step (s) from which mass is too little to matter beside drag and stiffness."""
+MASSLESS_TIME_STEP_S = 1e2
+"""Time step from which M/τ² is negligible compared with C/τ and K."""
 
-KEEP_RATE, KEEP_SIZE = 0.4, 0.05
-"""A factorised matrix serves again after a step of at most this share of the limits, while it
-brings the force down to this share at least."""
+KEEP_MAX_RATE, KEEP_MAX_STEP = 0.4, 0.05
+"""The factorised matrix is kept while the residual falls to at most this ratio, after a step of at
+most this fraction of the largest."""
 
-LEAST_TIME_STEP = 1e-6
-"""Time step (s) below which a matrix that is still singular stays so."""
+SINGULAR_TIME_STEP_S = 1e-6
+"""Time step below which a matrix that is still singular remains singular."""
 
-WARM_TIME_STEP = 1e3
-"""First time step (s) from a known state nearby: nearly Newton's own."""
+WARM_TIME_STEP_S, WARM_ITERATIONS = 1e3, 60
+"""First time step from a known state nearby, nearly Newton's; iterations until it is given up."""
 
-WARM_LIMIT = 60
-"""Iterations after which that is given up."""
-
-DRIFT_TIME_STEP = 10.0
-"""First time step (s) from a shape that is only roughly right."""
-
-DRIFT_LIMIT = 90
-"""Iterations after which such a start is given up."""
+DRIFT_TIME_STEP_S, DRIFT_ITERATIONS = 10.0, 90
+"""The same from a shape that is only roughly right."""
 
 
 def relax(
@@ -52,12 +47,12 @@ def relax(
     free: BoolArray | None = None,
     limit: int = 300,
 ) -> tuple[State, int, float]:
-    """Drive the forces to zero.
+    """Find a root of the forces from a state nearby.
 
     Parameters
     ----------
     free
-        Mask (dof,) of what may move; all by default.
+        Mask (dof,) of the degrees of freedom that may move; all by default.
     limit
         Iterations after which the search is given up.
 
@@ -81,13 +76,13 @@ def relax(
         residual = float(np.abs(force).max())
         if residual < tolerance or iteration == limit or not np.isfinite(residual):
             return state, iteration, residual
-        if factor is not None and residual > KEEP_RATE * last:
+        if factor is not None and residual > KEEP_MAX_RATE * last:
             factor = None
             continue
         iteration += 1
         if factor is None:
             data = here.stiffness + here.damping / tau
-            if tau < HEAVY:
+            if tau < MASSLESS_TIME_STEP_S:
                 data += mass(model, state, tow) / tau**2
             try:
                 factor = factorised(
@@ -95,30 +90,42 @@ def relax(
                 )
             except RuntimeError:  # singular: a shorter time step adds mass and drag
                 tau /= 4.0
-                if tau < LEAST_TIME_STEP:
+                if tau < SINGULAR_TIME_STEP_S:
                     return state, iteration, residual
                 continue
         step = factor.solve(force)
         size = step_size(model, step)
-        # Bars that flip between slack and taut raise the residual and ask for shorter steps.
+        # Bars that flip between slack and taut raise the residual: take a shorter time step.
         growth = 3.0 if residual < last else max(0.25, last / residual)
         tau = max(tau / 1.5, 0.3) if size > 1.0 else min(max(growth * tau, 0.3), 1e9)
-        if size > KEEP_SIZE:
+        if size > KEEP_MAX_STEP:
             factor = None
         last = residual
         state = state.moved(step / max(size, 1.0))
 
 
+def relax_warm(model: GearModel, state: State, tow: Tow) -> tuple[State, int, float]:
+    """Find a root from a known state nearby; returns as `relax` does."""
+    return relax(
+        model,
+        state,
+        tow,
+        tolerance=FORCE_TOLERANCE,
+        time_step=WARM_TIME_STEP_S,
+        limit=WARM_ITERATIONS,
+    )
+
+
 def step_size(model: GearModel, step: FloatArray) -> float:
-    """Size of a step (dof,) as a share of the limits."""
+    """Return the size of a step (dof,) as a fraction of the largest step."""
     n = model.nodes
     body = step[3 * n :].reshape(2, 6)
     metres = max(np.abs(step[: 3 * n]).max(), np.abs(body[:, :3]).max())
-    return float(max(metres / LIMIT_METRES, np.abs(body[:, 3:]).max() / LIMIT_RADIANS))
+    return float(max(metres / MAX_STEP_M, np.abs(body[:, 3:]).max() / MAX_STEP_RAD))
 
 
 def without_attitude(model: GearModel) -> BoolArray:
-    """Mask (dof,) of all degrees of freedom but the boards' attitudes."""
+    """Return a mask (dof,) of all degrees of freedom but the boards' attitudes."""
     free = np.ones(model.dof, bool)
     free[3 * model.nodes :].reshape(2, 6)[:, 3:] = False
     return free

@@ -1,7 +1,7 @@
-"""Linearisation of the forces at a steady state, with its factors; the newest are remembered.
+"""Linearisation of the forces at a steady state, with its factors, in a small cache.
 
-Sensitivities, the slow mode, the derivatives by net and effects, and the way to the next steady
-state all ask for the same matrix.
+Sensitivities, the slow mode, derivatives by net and effects, and the tangent to the next steady
+state all use the same matrix.
 """
 
 from collections import deque
@@ -14,8 +14,8 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.linear.factor import Factor, factorised
 
-REMEMBERED = 2
-"""A known state and one found from it. Each takes some 4 MB with the default gear."""
+CACHED_STATES = 2
+"""A known state and one found from it. Each takes about 4 MB with the default gear."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +43,11 @@ class RestLinearisation:
         return factorised(self.model.pattern, self.motion.stiffness)
 
 
-_RECENT: deque[RestLinearisation] = deque(maxlen=REMEMBERED)
+_RECENT: deque[RestLinearisation] = deque(maxlen=CACHED_STATES)
 
 
 def rest_linearisation(model: GearModel, state: State, tow: Tow) -> RestLinearisation:
-    """The linearisation at a state, remembered where it is one of the newest."""
+    """Return the linearisation at a state, from the cache if it is there."""
     for known in tuple(_RECENT):
         if known.state is state and known.tow is tow and known.model is model:
             return _renewed(known)
@@ -57,7 +57,7 @@ def rest_linearisation(model: GearModel, state: State, tow: Tow) -> RestLinearis
 
 
 def nearly_linearised(model: GearModel, state: State, tow: Tow) -> RestLinearisation:
-    """The same, or that of a gear whose properties may differ, at the same state."""
+    """Return the same, or one of a gear with other properties at the same state."""
     for known in tuple(_RECENT):
         if known.state is state and known.model.pattern is model.pattern:
             return _renewed(known)
@@ -65,7 +65,8 @@ def nearly_linearised(model: GearModel, state: State, tow: Tow) -> RestLinearisa
 
 
 def _renewed(known: RestLinearisation) -> RestLinearisation:
-    """Make one the newest; another thread may have dropped it meanwhile."""
+    """Move a linearisation to the end of the cache."""
+    # Another thread may have dropped it meanwhile.
     with suppress(ValueError):
         _RECENT.remove(known)
     _RECENT.append(known)

@@ -1,8 +1,8 @@
-"""Derivatives of every observable at a steady state, by the implicit function theorem.
+"""Derivatives of all observables at a steady state, by the implicit function theorem.
 
 At a root F(x, p) = 0, so dx/dp = K⁻¹ ∂F/∂p with K = -∂F/∂x; one factorisation serves all
-parameters. The partial derivatives and the observables along dx/dp are taken by the complex
-step and with C = -∂F/∂v, so the result is exact to the accuracy of the linear solution.
+parameters. Partial derivatives use the complex step and C = -∂F/∂v, so the result is exact to the
+accuracy of the linear solution.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from trawl_ros.model.board import own_load_slopes
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.slopes.along import add_forces_along_tow
 from trawl_ros.model.slopes.observed import observed_slopes
-from trawl_ros.model.state import TowSlopes, held_boundary
+from trawl_ros.model.state import State, TowSlopes, held_boundary
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.linear.factor import solve_refined
@@ -29,18 +29,9 @@ def _ahead(found: Equilibrium) -> FloatArray:
     return np.array([np.cos(heading), np.sin(heading), 0.0])
 
 
-def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
-    """Derivatives of the observables by the parameters.
-
-    Returns
-    -------
-    (n_observables, n_parameters) array
-        In the orders of `OBSERVABLES` and `PARAMETERS`.
-    """
-    number, state = len(COEFFICIENTS), found.state
-    pushes = np.zeros((model.dof, len(PARAMETERS)))
-    # Coefficients push the boards and nothing else.
-    pushes[-12:, :number] = own_load_slopes(
+def coefficient_pushes(model: GearModel, state: State) -> FloatArray:
+    """Return derivatives (12, 12) of the boards' own loads by the coefficients."""
+    slopes: FloatArray = own_load_slopes(
         model.board,
         model.coefficients,
         OUTWARD,
@@ -49,10 +40,26 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
         state.board_velocities,
         state.board_rates,
         model.water,
-    ).reshape(12, number)
+    ).reshape(12, len(COEFFICIENTS))
+    return slopes
+
+
+def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
+    """Return the derivatives of the observables by the parameters.
+
+    Returns
+    -------
+    (n_observables, n_parameters) array
+        In the orders of `OBSERVABLES` and `PARAMETERS`.
+    """
+    number, state = len(COEFFICIENTS), found.state
+    pushes = np.zeros((model.dof, len(PARAMETERS)))
+    # Coefficients change only the loads on the boards, the last twelve rows.
+    pushes[-12:, :number] = coefficient_pushes(model, state)
     known = rest_linearisation(model, state, found.tow)
     velocities, boundary = _changed_motion(model, found)
     add_forces_along_tow(model, state, found.tow, boundary, pushes)
+    # The whole gear moves faster, so its drag changes by C times the velocity.
     pushes[:, -1] -= model.pattern.times(known.motion.damping, velocities[:, -1])
     shifts = solve_refined(known.factor, pushes)
     found.remember(Tangent(model.coefficients, model.rest, shifts))
@@ -60,7 +67,7 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
 
 
 def _changed_motion(model: GearModel, found: Equilibrium) -> tuple[FloatArray, TowSlopes]:
-    """Change of velocities (dof, n_parameters) and boundary with the parameters."""
+    """Return the change of velocities (dof, n_parameters) and boundary with the parameters."""
     number, ahead = len(PARAMETERS), _ahead(found)
     velocities, boundary = np.zeros((model.dof, number)), held_boundary(number)
     boards = velocities[3 * model.nodes :].reshape(2, 6, number)
@@ -72,9 +79,9 @@ def _changed_motion(model: GearModel, found: Equilibrium) -> tuple[FloatArray, T
 
 
 def net_sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
-    """Derivatives of the observables by factors on drag and weight in water of the net.
+    """Return derivatives of the observables by factors on drag and weight in water of the net.
 
-    Forces are linear in both, so their derivatives are differences.
+    Forces are linear in both, so differences are exact.
 
     Returns
     -------

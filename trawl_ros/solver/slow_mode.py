@@ -1,8 +1,7 @@
 """Slowest mode of the gear: its decay time and its shape in the observables.
 
-After a change of warp length or speed the gear sinks or rises for minutes, doors and net alike,
-while tension and spread have long settled. What is still to come of that in a window is one
-amplitude times one shape.
+After a change of warp length or speed, doors and net sink or rise for minutes, while tension and
+spread settle soon. The rest of this motion in a window is one amplitude times one shape.
 """
 
 from dataclasses import dataclass
@@ -19,22 +18,22 @@ from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.modes import LinearisedMotion
 from trawl_ros.solver.rest_linearisation import rest_linearisation
 
-MODES = 4
-"""Modes that are sought, those of the eigenvalues nearest to 0."""
+SOUGHT_MODES = 4
+"""Number of modes sought, with the eigenvalues nearest to 0."""
 
 NET, PORT, STARBOARD = map(
     OBSERVABLES.index, ('net_depth', 'port_door_depth', 'starboard_door_depth')
 )
-LOPSIDED = 0.2
-"""Motions in which the doors' depths differ by more than this part of the net's do not come of
-warp length and speed."""
+MAX_DOOR_ASYMMETRY = 0.2
+"""Largest difference of the doors' depths per depth of the net in a motion that warp length and
+speed cause."""
 
 
 @dataclass(frozen=True)
 class SlowMode:
     """Slow mode: decay time (s) to 1/e and shape in the observables per metre of net depth.
 
-    Where a gear has none that moves the net, the time is 0 and so is the shape.
+    Both are 0 for a gear without a mode that moves the net.
     """
 
     decay_s: float
@@ -42,20 +41,20 @@ class SlowMode:
 
 
 def slow_mode(model: GearModel, found: Equilibrium) -> SlowMode:
-    """Find the slowest symmetric motion of M ẍ + C ẋ + K x = 0 by shift and invert."""
+    """Find the slowest symmetric motion of M ẍ + C ẋ + K x = 0 by shift-invert."""
     at = model, found.state, found.tow
     known = rest_linearisation(*at)
     motion = LinearisedMotion(
         model.pattern, mass(*at), known.motion.damping, known.motion.stiffness
     )
-    rates, shapes = motion.nearest(0.0, MODES, tolerance=1e-4, factor=known.factor)
+    rates, shapes = motion.nearest(0.0, SOUGHT_MODES, tolerance=1e-4, factor=known.factor)
     best = SlowMode(0.0, np.zeros(len(OBSERVABLES)))
     for rate, vector in zip(rates, shapes.T, strict=True):
         if abs(rate.imag) > 1e-6 * abs(rate) or rate.real >= 0.0:
             continue
         along = found.state.moved(1j * STEP * vector.real)
         shape = observe(model, along, found.tow).array().imag / STEP
-        lopsided = abs(shape[PORT] - shape[STARBOARD]) > LOPSIDED * abs(shape[NET])
+        lopsided = abs(shape[PORT] - shape[STARBOARD]) > MAX_DOOR_ASYMMETRY * abs(shape[NET])
         if not lopsided and shape[NET] != 0.0 and -1.0 / rate.real > best.decay_s:
             best = SlowMode(float(-1.0 / rate.real), shape / shape[NET])
     return best

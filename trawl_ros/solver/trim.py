@@ -1,8 +1,8 @@
 """Trim: fastening points at which a board works at wanted angles.
 
-With its attitude prescribed, a board's force balance is met by its position; its moment
-balance by its fastening points. Of all changes of the three points that balance the moments,
-Newton takes the smallest, so a trim stays close to the rigging it starts from.
+With a prescribed attitude, a board's position balances the forces and its fastening points balance
+the moments. Nine coordinates balance three moments, so Newton takes the smallest change (by the
+pseudo-inverse), and a trim stays close to the rigging it starts from.
 """
 
 from dataclasses import dataclass, replace
@@ -16,33 +16,52 @@ from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP
 from trawl_ros.model.observables import observe
-from trawl_ros.model.rotations import about_axis
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.cold_start import held_shape
 from trawl_ros.solver.equilibrium import SteadyState, steady_state, with_effects
-from trawl_ros.solver.first_guess import first_guess
+from trawl_ros.solver.first_guess import attitudes, first_guess
 from trawl_ros.solver.linear.factor import factorised_part
 from trawl_ros.solver.operating_point import steady_tow
 from trawl_ros.solver.relax import relax, without_attitude
 
-ITERATIONS = 30
-LIMIT = 0.3
-"""Largest change of a coordinate in one iteration, m."""
 
-SHAPED, SHAPED_LIMIT = 50.0, 120
-"""Force left (N) at which a shape is near enough, and iterations in which it is found where no bars
-flip between slack and taut."""
+@dataclass(frozen=True)
+class TrimOptions:
+    """Options of a trim.
 
-SETTLED = 1e-7
-"""Change of a coordinate at which the points are found, m."""
+    Attributes
+    ----------
+    iterations
+        Newton iterations for the points.
+    max_move_m
+        Largest change of a coordinate in one iteration, m.
+    converged_move_m
+        Change of a coordinate at which the points are converged, m.
+    shape_force_n, shape_iterations
+        Force left (N) at which the first shape is close enough, and iterations that suffice if no
+        bars flip between slack and taut.
+    yaw_range
+        Half the range of yaw (rad) around the wanted attack. They differ by a few degrees, because
+        pitch, roll and the motion of the gear add to yaw.
+    """
+
+    iterations: int = 30
+    max_move_m: float = 0.3
+    converged_move_m: float = 1e-7
+    shape_force_n: float = 50.0
+    shape_iterations: int = 120
+    yaw_range: float = 0.15
+
+
+OPTIONS = TrimOptions()
 
 
 @dataclass(frozen=True)
 class Trim:
     """Result of a trim: fastening points and steady state.
 
-    ``points`` (3, 3) are those of warp, upper and lower bridle in the outward frame; ``steady`` is
-    the steady state that the released gear has with them.
+    ``points`` (3, 3) are those of warp, upper and lower bridle in the outward frame, m. ``steady``
+    is the steady state of the released gear with them.
     """
 
     points: FloatArray
@@ -50,18 +69,10 @@ class Trim:
     steady: SteadyState
 
 
-def attitudes(yaw: float, pitch: float, roll: float) -> FloatArray:
-    """Rotations (2, 3, 3) of both boards from angles of the port board, rad: yaw turns the
-    leading edge outward, pitch is nose down, roll tips the outward normal up.
-    """
-    port = about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
-    flip = np.array([1.0, -1.0, 1.0])
-    return np.stack([port, flip[:, None] * port * flip])
-
-
 def roll_for(inclination: float, pitch: float) -> float:
-    """Roll (rad) with which a board has an inclination at a pitch: δ is the tilt of
-    R_y(pitch) R_x(roll), so cos δ = cos pitch cos roll.
+    """Return the roll (rad) that gives a board an inclination at a pitch.
+
+    δ is the tilt of R_y(pitch) R_x(roll), so cos δ = cos pitch cos roll.
 
     Raises
     ------
@@ -71,8 +82,8 @@ def roll_for(inclination: float, pitch: float) -> float:
     tilt = np.cos(inclination) / np.cos(pitch)
     if not -1.0 <= tilt <= 1.0:
         raise NoSteadyState(
-            f'an inclination of {np.degrees(inclination):.1f}° cannot have a '
-            f'pitch of {np.degrees(pitch):.1f}°, expected a smaller pitch'
+            f'an inclination of {np.degrees(inclination):.1f}° is not possible with a pitch of '
+            f'{np.degrees(pitch):.1f}°, expected a smaller pitch'
         )
     return float(np.copysign(np.arccos(tilt), inclination))
 
@@ -91,10 +102,10 @@ def trim(
     Parameters
     ----------
     model
-        The gear; its points are where the search starts, its installation angles are kept.
-        Effects of its gear file act.
+        The gear. The search starts from its points and keeps its installation angles. Effects of
+        its gear file act.
     attack, inclination
-        Wanted α and δ, rad; the outward normal leans up, with a negative δ down.
+        Wanted α and δ, rad; the outward normal leans up, or down if δ is negative.
     pitch
         Wanted pitch of the boards, nose down, rad.
     warp_length, speed
@@ -108,7 +119,7 @@ def trim(
     Raises
     ------
     NoSteadyState
-        If no points balance the boards there, or the state they give cannot be used.
+        If no points balance the boards there, or their steady state is not usable.
     GearError
         For a gear without boards.
 
@@ -134,17 +145,17 @@ def trim(
         found.balance(attitudes(yaw, pitch, roll))
         return observe(found.model, found.state, tow).port_attack - attack
 
-    # Attack differs from yaw by what pitch, roll and the gear's own motion add: a few degrees.
+    half = OPTIONS.yaw_range
     try:
-        yaw = brentq(excess, attack - 0.15, attack + 0.15, xtol=1e-6)
+        yaw = brentq(excess, attack - half, attack + half, xtol=1e-6)
     except ValueError as reason:
-        # The boards' own motion adds more than that where they lie nearly flat.
+        # The boards' own motion changes attack by more where they lie nearly flat.
         raise NoSteadyState(
-            f'no yaw within {np.degrees(0.15):.1f}° of the wanted attack angle, '
-            f'{np.degrees(attack):.1f}°, gives the boards that angle'
+            f'no yaw within {np.degrees(half):.1f}° of the wanted attack angle, '
+            f'{np.degrees(attack):.1f}°, gives the boards this angle'
         ) from reason
     found.balance(attitudes(yaw, pitch, roll))
-    # The trimmed shape is the start: released, the boards stay where they were held.
+    # The held shape is balanced, so the released gear starts at its root.
     trimmed = model.with_board(points=found.model.board.points)
     return Trim(
         trimmed.board.points, trimmed, steady_state(trimmed, warp_length, speed, near=found.state)
@@ -152,8 +163,10 @@ def trim(
 
 
 class _Search:
-    """Search for fastening points, one attitude after another, always from the rigging given first:
-    the smallest change depends on where it starts, not on the attitudes tried before.
+    """Search for fastening points at one attitude after another.
+
+    Each search starts from the first rigging, so that its smallest change does not depend on the
+    attitudes tried before.
     """
 
     def __init__(self, model: GearModel, state: State, tow: Tow) -> None:
@@ -165,33 +178,40 @@ class _Search:
         free = without_attitude(model)
         held = replace(self.state, board_rotations=rotations)
         state, _, left = relax(
-            model, held, tow, tolerance=SHAPED, time_step=2.0, free=free, limit=SHAPED_LIMIT
+            model,
+            held,
+            tow,
+            tolerance=OPTIONS.shape_force_n,
+            time_step=2.0,
+            free=free,
+            limit=OPTIONS.shape_iterations,
         )
-        if left > SHAPED:
+        if left > OPTIONS.shape_force_n:
             state, _, left = held_shape(model, held, tow)
-        if left > SHAPED:
+        if left > OPTIONS.shape_force_n:
             raise NoSteadyState(
-                'with the boards held at the wanted angles the gear finds no '
-                f'shape, {left:.3g} N left'
+                'the gear has no shape with the boards held at the wanted angles, '
+                f'{left:.3g} N left'
             )
         moving = np.flatnonzero(free)
         moments = np.arange(3 * model.nodes + 3, 3 * model.nodes + 6)
-        for _ in range(ITERATIONS):
+        for _ in range(OPTIONS.iterations):
             here = linearised(model, state, tow)
             stiffness = model.pattern.matrix(here.stiffness)
             pushes = _by_points(model, state, tow)
             solve = factorised_part(stiffness[moving][:, moving].tocsc()).solve
             shifts = solve(np.column_stack([here.force[moving], pushes[moving]]))
             rows = stiffness[moments][:, moving]
+            # Static condensation: the moment left and its derivatives by the points.
             left_moment = here.force[moments] - rows @ shifts[:, 0]
             by_points = pushes[moments] - rows @ shifts[:, 1:]
             change = -np.linalg.pinv(by_points) @ left_moment
-            share = min(1.0, LIMIT / np.abs(change).max())
+            share = min(1.0, OPTIONS.max_move_m / np.abs(change).max())
             step = np.zeros(model.dof)
             step[moving] = share * (shifts[:, 0] + shifts[:, 1:] @ change)
             state = state.moved(step)
             model = model.with_board(points=model.board.points + share * change.reshape(3, 3))
-            if np.abs(change).max() < SETTLED:
+            if np.abs(change).max() < OPTIONS.converged_move_m:
                 self.model, self.state = model, state
                 return
         raise NoSteadyState(
@@ -200,7 +220,7 @@ class _Search:
 
 
 def _by_points(model: GearModel, state: State, tow: Tow) -> FloatArray:
-    """Derivatives (dof, 9) of the forces by the coordinates of both boards' fastening points."""
+    """Return derivatives (dof, 9) of the forces by coordinates of both boards' points."""
     columns = []
     for index in range(9):
         points = model.board.points.astype(complex)

@@ -1,13 +1,11 @@
-"""Warm start: Newton's method from a known steady state, along its tangent and with tensions
-that are carried on.
+"""Warm start: Newton's method along the tangent of a known state, with extrapolated tensions.
 
-Two things keep Newton's method from its few steps in netting. A step across a bar stretches it to
-second order, and the next matrix is stiffened by a pull that is not there; and a bar that is to
-fall slack creeps there on the rounded corner of its law, by half at each step. Both end where the
-matrix is made with the tension to which the step before would have led to first order, instead of
-with the one at the new length (mixed integration point Newton: Magisano, Leonetti and Garcea
-2017), and where a bar whose tension would be negative is taken for slack at once. The root is that
-of the same forces: they alone decide when the search ends.
+Two properties of netting slow down Newton's method. A step across a bar stretches it to second
+order, and this false tension stiffens the next matrix. And a bar that goes slack approaches it on
+the rounded corner of its law, halving the distance at each step. Both are avoided by two changes
+of the matrix. It is made with the first-order tension of the step before instead of the tension at
+the new length (mixed integration point Newton: Magisano, Leonetti and Garcea 2017). And a bar whose
+tension would be negative is slack at once. The forces, and so the root, stay the same.
 """
 
 from dataclasses import dataclass, replace
@@ -23,36 +21,52 @@ from trawl_ros.model.numerics import STEP, length, stepped
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.first_guess import at_velocity
 from trawl_ros.solver.linear.factor import Factor, factorised
-from trawl_ros.solver.relax import TOLERANCE, step_size
+from trawl_ros.solver.relax import FORCE_TOLERANCE, step_size
 from trawl_ros.solver.rest_linearisation import nearly_linearised
 
-LIMIT = 25
-"""Iterations after which the search is given up: it needs six to ten where it succeeds."""
+MAX_BOUNDARY_HALVINGS = 2
+"""Number of times that a change of the towing boundary is halved before the search is given up."""
 
-TURN = 0.3
-"""Largest turn of a board (rad) along the tangent from which a start is tried."""
+SLACK_STRAIN = -1.001 * SLACK_WIDTH
+"""Strain at which a bar with negative tension is linearised: just on the slack branch."""
 
-FARTHEST_STEP = 3.0
-"""Step, as a share of the limits of `relax`, from which the search is given up."""
 
-KEEP_RATE, KEEP_SIZE = 0.2, 0.02
-"""A factorised matrix serves again after a step of at most this share of those limits, while it
-brings the force down to this share at least."""
+@dataclass(frozen=True)
+class WarmStartOptions:
+    """Options of a warm start.
 
-LEFT_BY_OTHERS = 1.0
-"""Force (N) left at a known steady state from which more than the coefficients has changed."""
+    Attributes
+    ----------
+    iterations
+        Iterations until the search is given up; it needs six to ten where it succeeds.
+    max_board_turn
+        Largest rotation of a board along the tangent, rad.
+    max_step
+        Largest step, relative to the largest of `relax`.
+    keep_max_rate, keep_max_step
+        The factorised matrix is kept while the residual falls to at most this ratio, after a step
+        of at most this size relative to the largest of `relax`.
+    max_tangent_residual_n
+        Force left at the known state, N, above which more than the coefficients has changed.
+    """
 
-HALVINGS = 2
-"""Number of times that a change of the towing boundary is halved before another way is tried."""
+    iterations: int = 25
+    max_board_turn: float = 0.3
+    max_step: float = 3.0
+    keep_max_rate: float = 0.2
+    keep_max_step: float = 0.02
+    max_tangent_residual_n: float = 1.0
 
-SLACK = -1.001 * SLACK_WIDTH
-"""Strain of a bar that is taken for slack."""
+
+OPTIONS = WarmStartOptions()
 
 
 @dataclass(frozen=True)
 class Tangent:
-    """Tangent of a steady state: displacements (dof, 15) per unit of the twelve coefficients, m of
-    either warp and m/s of speed, at these coefficients (12,) and lengths of bars (m,) at rest.
+    """Tangent of a steady state.
+
+    ``columns`` (dof, 15) are displacements per unit of the twelve coefficients, per m of either
+    warp and per m/s of speed, at ``coefficients`` (12,) and unstretched lengths ``rest`` (m,).
     """
 
     coefficients: FloatArray
@@ -60,29 +74,31 @@ class Tangent:
     columns: FloatArray
 
     def serves(self, model: GearModel, state: State, tow: Tow) -> bool:
-        """True if no other property of the gear has changed since, of which it knows nothing."""
+        """Return True if only coefficients of the gear have changed since."""
         same = model.with_coefficients(self.coefficients)
-        return bool(np.abs(forces(same, state, tow)).max() <= LEFT_BY_OTHERS)
+        return bool(np.abs(forces(same, state, tow)).max() <= OPTIONS.max_tangent_residual_n)
 
 
 @dataclass(frozen=True)
 class _Bars:
-    """Bars after a step: their strains (m,), those by which their law is linearised, and the forces
-    (dof,) by the linearised tensions beyond those that the strains give.
+    """Bars after a step.
+
+    ``strains`` (m,) are those of their lengths, ``extrapolated`` (m,) those of the linearisation,
+    and ``excess`` (dof,) the forces by linearised tensions minus those by the strains.
     """
 
     strains: FloatArray
-    carried: FloatArray
-    beyond: FloatArray
+    extrapolated: FloatArray
+    excess: FloatArray
 
 
 def warm_start(
     model: GearModel, state: State, old: Tow, new: Tow, tangent: Tangent | None = None
 ) -> tuple[State, int, float] | None:
-    """Find the steady state at ``new`` from one that is known at ``old``.
+    """Find the steady state at ``new`` from a known one at ``old``.
 
-    The known one may be that of a gear with other properties, as long as its bars are the same.
-    ``tangent`` is its own, where that is known; it serves where no other property has changed.
+    The known state may be of a gear with other properties, as long as its bars are the same. Its
+    ``tangent`` is used if it is known and no other property has changed.
 
     Returns
     -------
@@ -94,7 +110,7 @@ def warm_start(
     except RuntimeError:  # singular: a fold
         return None
     turns = first[3 * model.nodes :].reshape(2, 6)[:, 3:]
-    if not np.abs(turns).max() <= TURN:
+    if not np.abs(turns).max() <= OPTIONS.max_board_turn:
         return None
     before = _spans(model, state, old) / rest_lengths(_as_known(model, tangent), old)[0] - 1.0
     moved = at_velocity(state.moved(first), new.block_velocities.mean(0))
@@ -107,14 +123,14 @@ def warm_start_in_parts(
     old: Tow,
     new: Tow,
     tangent: Tangent | None = None,
-    halvings: int = HALVINGS,
+    halvings: int = MAX_BOUNDARY_HALVINGS,
 ) -> tuple[State, int, float] | None:
-    """The same, by way of the state halfway where `warm_start` does not arrive.
+    """Find the same state by way of the one halfway, where `warm_start` does not converge.
 
-    Bars that flip turn Newton's method away on long ways in fine nets, not on short ones.
+    In fine nets, flipping bars stop Newton's method on large changes, but not on small ones.
     """
     found = warm_start(model, state, old, new, tangent)
-    if (found and found[2] <= TOLERANCE) or halvings == 0:
+    if (found and found[2] <= FORCE_TOLERANCE) or halvings == 0:
         return found
     middle = Tow(*((a + b) / 2.0 for a, b in zip(_parts(old), _parts(new), strict=True)))
     if all(map(np.array_equal, _parts(old), _parts(middle))):
@@ -126,7 +142,7 @@ def warm_start_in_parts(
             return None
         state, more, residual = found
         spent += more
-        if residual > TOLERANCE:
+        if residual > FORCE_TOLERANCE:
             break
     return state, spent, residual
 
@@ -138,7 +154,7 @@ def _parts(tow: Tow) -> tuple[FloatArray, ...]:
 def _displacement(
     model: GearModel, state: State, old: Tow, new: Tow, tangent: Tangent | None
 ) -> FloatArray:
-    """Displacement (dof,) of a known steady state to first order in all that has changed."""
+    """Return the first-order displacement (dof,) of a known state for all that has changed."""
     change = new.block_velocities.mean(0) - old.block_velocities.mean(0)
     along = old.blocks[0, 1] - old.blocks[1, 1], old.blocks[1, 0] - old.blocks[0, 0], 0.0
     ahead = np.array(along) / np.linalg.norm(along)
@@ -159,7 +175,7 @@ def _displacement(
         lengths=stepped(old.lengths, new.lengths - old.lengths),
         length_rates=old.length_rates,
     )
-    # A taut wire that were longer at once would be slack, and pull less by no more than it did.
+    # Complex step along the change: made at once, a longer unstretched wire would go slack.
     cut = _as_known(model, tangent)
     push = forces(replace(cut, rest=stepped(cut.rest, model.rest - cut.rest)), towed, changing)
     known = nearly_linearised(cut, state, old)
@@ -167,39 +183,44 @@ def _displacement(
 
 
 def _as_known(model: GearModel, tangent: Tangent | None) -> GearModel:
-    """Gear with its bars as long as they were in the known state."""
+    """Return the gear with the unstretched lengths of the known state."""
     return model if tangent is None else replace(model, rest=tangent.rest)
 
 
 def _newton(
     model: GearModel, state: State, tow: Tow, before: FloatArray
 ) -> tuple[State, int, float]:
-    """Newton's method from strains (m,) by which the bars' law is linearised at first."""
+    """Run Newton's method; ``before`` (m,) are the strains of the first linearisation."""
     rest = rest_lengths(model, tow)[0]
-    bars = _carried(model, state, tow, rest, before)
+    bars = _extrapolated(model, state, tow, rest, before)
     factor: Factor | None = None
     last = np.inf
-    for iteration in range(LIMIT + 1):
+    for iteration in range(OPTIONS.iterations + 1):
         force = forces(model, state, tow)
         residual = float(np.abs(force).max())
-        if residual < TOLERANCE or iteration == LIMIT or not np.isfinite(residual):
+        if (
+            residual < FORCE_TOLERANCE
+            or iteration == OPTIONS.iterations
+            or not np.isfinite(residual)
+        ):
             break
-        if factor is None or residual > KEEP_RATE * last:
-            stretched = replace(model, rest=rest * (1.0 + bars.strains) / (1.0 + bars.carried))
+        if factor is None or residual > OPTIONS.keep_max_rate * last:
+            # Other unstretched lengths give the model the extrapolated strains at its lengths.
+            stretched = replace(model, rest=rest * (1.0 + bars.strains) / (1.0 + bars.extrapolated))
             try:
                 factor = factorised(model.pattern, linearised(stretched, state, tow).stiffness)
             except RuntimeError:  # singular
                 break
-            force += bars.beyond
+            force += bars.excess
         step = factor.solve(force)
         size = step_size(model, step)
-        if size > FARTHEST_STEP:
+        if size > OPTIONS.max_step:
             break
-        if size > KEEP_SIZE:
+        if size > OPTIONS.keep_max_step:
             factor = None
         last = residual
         state = state.moved(step / max(size, 1.0))
-        bars = _carried(model, state, tow, rest, bars.carried)
+        bars = _extrapolated(model, state, tow, rest, bars.extrapolated)
     return state, iteration, residual
 
 
@@ -208,14 +229,14 @@ def _spans(model: GearModel, state: State, tow: Tow) -> FloatArray:
     return length(positions[model.ends[:, 1]] - positions[model.ends[:, 0]])
 
 
-def _carried(
+def _extrapolated(
     model: GearModel, state: State, tow: Tow, rest: FloatArray, before: FloatArray
 ) -> _Bars:
-    """Bars after a step, from the strains by which their law was linearised before it."""
+    """Return the bars after a step, from the strains of the linearisation before it."""
     properties = model.bars
-    strains, carried = np.empty((2, len(before)))
-    beyond = np.zeros(model.dof)
-    _carry(
+    strains, extrapolated = np.empty((2, len(before)))
+    excess = np.zeros(model.dof)
+    _extrapolate(
         model.ends,
         points_of(model, state, tow).positions,
         rest,
@@ -224,14 +245,14 @@ def _carried(
         before,
         model.nodes,
         strains,
-        carried,
-        beyond,
+        extrapolated,
+        excess,
     )
-    return _Bars(strains, carried, beyond)
+    return _Bars(strains, extrapolated, excess)
 
 
 @compiled
-def _carry(
+def _extrapolate(
     ends: IntArray,
     x: FloatArray,
     rest: FloatArray,
@@ -240,8 +261,8 @@ def _carry(
     before: FloatArray,
     nodes: int,
     strains: FloatArray,
-    carried: FloatArray,
-    beyond: FloatArray,
+    extrapolated: FloatArray,
+    excess: FloatArray,
 ) -> None:
     vector = np.empty(3)
     for n in range(len(ends)):
@@ -250,25 +271,27 @@ def _carry(
             vector[i] = x[end, i] - x[start, i]
         span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
         strain = span / rest[n] - 1.0
-        strains[n] = carried[n] = strain
+        strains[n] = extrapolated[n] = strain
         elastic, slope, _ = taut_at(before[n], bow[n])
-        # A bar without slope was slack: only its length tells whether it still is.
+        # A bar without slope was slack: only its new length decides whether it still is.
         if slope == 0.0:
             continue
         reached = elastic + slope * (strain - before[n])
         if bow[n] > 0.0:
             if reached > 0.0:
-                carried[n] = reached - bow[n] / reached**2
+                # Inverse of the law of bowed twine: strain at this tension.
+                extrapolated[n] = reached - bow[n] / reached**2
         elif reached <= 0.0:
-            carried[n] = min(strain, SLACK)
+            extrapolated[n] = min(strain, SLACK_STRAIN)
         elif reached < SLACK_WIDTH:
-            carried[n] = 2.0 * np.sqrt(SLACK_WIDTH * reached) - SLACK_WIDTH
+            # Inverse of the rounded corner between slack and taut.
+            extrapolated[n] = 2.0 * np.sqrt(SLACK_WIDTH * reached) - SLACK_WIDTH
         else:
-            carried[n] = reached
+            extrapolated[n] = reached
         if start < nodes and end < nodes:
-            elastic, slope, _ = taut_at(carried[n], bow[n])
-            linear = elastic + slope * (strain - carried[n])
+            elastic, slope, _ = taut_at(extrapolated[n], bow[n])
+            linear = elastic + slope * (strain - extrapolated[n])
             pull = stiffness[n] * (linear - taut_at(strain, bow[n])[0]) / span
             for i in range(3):
-                beyond[3 * start + i] += pull * vector[i]
-                beyond[3 * end + i] -= pull * vector[i]
+                excess[3 * start + i] += pull * vector[i]
+                excess[3 * end + i] -= pull * vector[i]

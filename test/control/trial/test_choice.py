@@ -68,11 +68,11 @@ def test_what_does_not_fit_into_the_time_is_told_apart():
     choice = chosen(minutes_left=10.0)
     assert choice.proposal is None
     assert choice.late
-    assert str(choice) == 'none of 2 proposals is allowed (time 2)'
+    assert choice.refused == {'time': 2}
     none = chosen(TrialSettings(max_tension=1.0))
     assert none.proposal is None
     assert not none.late
-    assert str(chosen(proposals=())) == 'none of 0 proposals is allowed (none came)'
+    assert not chosen(proposals=()).refused
 
 
 def test_a_slow_adviser_is_waited_for_and_a_poor_one_not_for_ever():

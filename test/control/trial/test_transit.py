@@ -4,8 +4,8 @@ import itertools
 
 import pytest
 
+from trawl_ros.control.trial.machine import Transit
 from trawl_ros.control.trial.records import TrialSettings, TrialTarget
-from trawl_ros.control.trial.transit import Transit
 
 SETTINGS = TrialSettings(winch_speed=0.4, ship_acceleration=0.02, least_speed=1.9, most_speed=2.5)
 SHORT = TrialTarget(port=300.0, starboard=300.0, speed=2.1)

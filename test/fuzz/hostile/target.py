@@ -59,7 +59,7 @@ def command(*args: object) -> str:
     Exception
         What went through the command.
     """
-    from trawl_ros.cli.bag import FINDINGS
+    from trawl_ros.cli.bag import EXIT_FINDINGS
     from trawl_ros.cli.main import trawl
 
     said, code = StringIO(), 0
@@ -70,7 +70,7 @@ def command(*args: object) -> str:
             code = end.code if isinstance(end.code, int) else 1
     text = said.getvalue()
     assert 'Traceback (most recent call last)' not in text, text[-2000:]
-    assert code in (0, FINDINGS) or 'Error: ' in text, (
+    assert code in (0, EXIT_FINDINGS) or 'Error: ' in text, (
         f'exit {code} without a sentence: {text[-200:]!r}'
     )
     return text

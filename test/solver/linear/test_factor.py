@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.solver.linear.factor import MANY, factorised, factorised_part, solve_refined
+from trawl_ros.solver.linear.factor import (
+    MIN_RIGHTS_FOR_PANELS,
+    factorised,
+    factorised_part,
+    solve_refined,
+)
 
 
 @pytest.fixture(scope='module')
@@ -50,7 +55,7 @@ def test_many_side_by_side_are_solved_as_one_is(
 ) -> None:
     data = turned * gear_like(model, rng) + 0.1 * gear_like(model, rng)
     factor = factorised(model.pattern, data)
-    right = rng.normal(size=(model.dof, MANY + 1))
+    right = rng.normal(size=(model.dof, MIN_RIGHTS_FOR_PANELS + 1))
     columns = np.column_stack([factor.solve(column) for column in right.T])
     assert np.abs(factor.solve(right) - columns).max() < 1e-12 * np.abs(columns).max()
 

@@ -62,7 +62,7 @@ def test_numbers_that_no_gear_has_are_refused(gear, key, value):
         ('warp.stiffness_n', 1e3),
         ('warp.weight_in_water_n_m', -1000.0),
         ('kite.area_m2', 1000.0),
-        ('kite.lift_slope', 1e9),
+        ('kite.normal_limit', 1e9),
         ('netting.body.0.mesh_m', 0.002),
         ('netting.normal_drag', 1e9),
         ('board.mass_kg', 1e12),
@@ -79,10 +79,9 @@ def test_gears_at_the_bounds_are_answered_in_time(gear, key, value):
     assert time.thread_time() - began < 40.0
 
 
-def test_a_search_that_goes_on_for_long_is_given_up(gear, monkeypatch):
-    monkeypatch.setattr(search_budget, 'MAX_VALUES', 1)
-    monkeypatch.setattr(search_budget, 'MIN_FACTORISATIONS', 3)
-    with pytest.raises(NoSteadyState, match='4 factorisations, after which'):
+def test_a_search_that_goes_on_for_long_is_given_up(gear):
+    budget = search_budget.SearchBudget(max_values=1, min_factorisations=3)
+    with search_budget.search_within(budget), pytest.raises(NoSteadyState, match=' 4 '):
         find_equilibrium(build_model(gear), OperatingPoint(500.0, 500.0, 2.1))
     # Outside of a search nothing is counted.
     search_budget.spend(10**12)
@@ -94,8 +93,9 @@ def test_a_singular_matrix_is_no_steady_state(gear, monkeypatch, reason):
         raise reason
 
     monkeypatch.setattr(factor, 'elimination', refuse)
-    with pytest.raises(NoSteadyState, match='singular'):
+    with pytest.raises(NoSteadyState) as caught:
         steady_state(build_model(gear), 500.0, 2.1)
+    assert caught.value.__cause__ is reason
 
 
 def test_a_matrix_that_stays_singular_is_no_steady_state(gear, monkeypatch):

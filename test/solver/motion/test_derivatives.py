@@ -2,7 +2,7 @@
 
 import gc
 import tracemalloc
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,14 +16,12 @@ from trawl_ros.estimation.fit.parameters import BOARD
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
 from trawl_ros.records.observables import OBSERVABLES
-from trawl_ros.solver import stepper as stepper_module
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.first_guess import at_velocity
-from trawl_ros.solver.motion import stepper as differentiated_stepper
 from trawl_ros.solver.motion.course import InputPoint, course_point
 from trawl_ros.solver.motion.parameters import MotionParameters
-from trawl_ros.solver.motion.start import slow_motions
-from trawl_ros.solver.motion.tow import DifferentiatedTow
+from trawl_ros.solver.motion.stepper import DAMPED, LinearisedStepOptions
+from trawl_ros.solver.motion.tow import DifferentiatedTow, slow_motions
 from trawl_ros.solver.relax import relax
 from trawl_ros.solver.stepper import StepFailed, Stepper, at_rest
 
@@ -69,8 +67,14 @@ class Differentiated:
     first: Equilibrium
 
 
-def differentiated(model: GearModel, duration_s: float) -> Differentiated:
-    tow = DifferentiatedTow(model, PARAMETERS, hauling, ACTING)
+TO_ROUNDING = LinearisedStepOptions(tolerance=1e-8, root_tolerance_ratio=1.0)
+"""Leaves of a difference only what the parameter itself makes."""
+
+
+def differentiated(
+    model: GearModel, duration_s: float, options: LinearisedStepOptions = TO_ROUNDING
+) -> Differentiated:
+    tow = DifferentiatedTow(model, PARAMETERS, hauling, ACTING, options=options)
     seen, steps = [], []
     for number in range(1, round(duration_s / STEP_S) + 1):
         steps.append(tuple(halved(tow.step, STEP_S)))
@@ -138,8 +142,8 @@ def towed_again(run: Differentiated, case: Changed) -> np.ndarray:
     start = at_velocity(run.first.state, course.tow.block_velocities[0])
     state, _, left = relax(model, start, course.tow, tolerance=1e-6, time_step=1e9)
     assert left < 1e-6
-    stepper, motion, time, seen = Stepper(model), at_rest(state), 0.0, []
-    stepper.scheme = differentiated_stepper.DAMPED
+    stepper, motion, time, seen = Stepper(model, TO_ROUNDING), at_rest(state), 0.0, []
+    stepper.scheme = DAMPED
     for number, steps in enumerate(run.steps, 1):
         for h in steps:
             time += h
@@ -200,21 +204,12 @@ HALVED = ('c4', 'drag', 'counter_scale port_more', 'speed_log scale', 'speed dri
 
 
 @pytest.fixture(scope='module')
-def solved_to_rounding() -> Iterator[None]:
-    """Leave of a difference only what the parameter itself makes."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stepper_module, 'TOLERANCE', 1e-8)
-        patch.setattr(differentiated_stepper, 'NEARER', 1.0)
-        yield
-
-
-@pytest.fixture(scope='module')
-def quick(model: GearModel, solved_to_rounding: None) -> Differentiated:
+def quick(model: GearModel) -> Differentiated:
     return differentiated(model, QUICK_S)
 
 
 @pytest.fixture(scope='module')
-def ten_minutes(model: GearModel, solved_to_rounding: None) -> Differentiated:
+def ten_minutes(model: GearModel) -> Differentiated:
     return differentiated(model, LONG_S)
 
 
@@ -240,10 +235,8 @@ def test_names_are_those_of_a_fit(quick: Differentiated) -> None:
 
 
 def test_shipped_tolerance_is_as_exact(model: GearModel) -> None:
-    loose = differentiated(model, QUICK_S)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stepper_module, 'TOLERANCE', 1e-7)
-        tight = differentiated(model, QUICK_S)
+    loose = differentiated(model, QUICK_S, LinearisedStepOptions())
+    tight = differentiated(model, QUICK_S, LinearisedStepOptions(tolerance=1e-7))
     value = 1e-3 * np.abs(tight.values).max(axis=0)[:, None]
     scale = np.maximum(np.abs(tight.slopes).max(axis=0), value)
     assert (np.abs(loose.slopes - tight.slopes).max(axis=0) / scale).max() < EXACT
@@ -276,9 +269,9 @@ def test_a_step_that_fails_leaves_the_tow_where_it_was(model: GearModel) -> None
     tow = DifferentiatedTow(model, MotionParameters(), hauling)
     tow.step(STEP_S)
     before = tow.time, tow.motion, tow.slopes, tow.course
+    never = LinearisedStepOptions(iterations=0, full_newton_iterations=0)
     with pytest.MonkeyPatch.context() as patch:
-        for number in ('ITERATIONS', 'PATIENCE'):
-            patch.setattr(stepper_module, number, 1)
+        patch.setattr(tow._stepper, 'options', never)
         with pytest.raises(StepFailed):
             tow.advance(STEP_S)
     assert all(a is b for a, b in zip(before, (tow.time, tow.motion, tow.slopes, tow.course)))

@@ -13,12 +13,12 @@ from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.stepper import DifferentiatedStepper, is_too_long
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import (
-    PATIENCE,
     SCHEME,
     Scheme,
     SolvedStep,
     Step,
     StepFailed,
+    StepperOptions,
     at_rest,
 )
 
@@ -103,7 +103,7 @@ def test_a_step_that_fails_is_tried_again_in_another_way_alone(
     with pytest.raises(StepFailed):
         stepper.step(at_rest(found.state), torn, h)
     # Long steps take a matrix for each iteration at once; short ones, where they failed with one.
-    assert most - 1 < stepper.factorisations / PATIENCE <= most
+    assert most - 1 < stepper.factorisations / StepperOptions().full_newton_iterations <= most
 
 
 def test_what_vibrates_faster_than_long_steps_is_damped_more_than_in_a_simulation() -> None:
@@ -116,16 +116,16 @@ def left_of_fast(scheme: Scheme) -> float:
     h, stiffness = 1.0, (2000.0 * np.pi) ** 2
     rows = []
     for velocity, place, acceleration, averaged in np.eye(4):
-        carried = scheme.carried(acceleration, averaged)
-        way = scheme.way(velocity, averaged, carried, h)
-        pace = scheme.pace(velocity, averaged, carried, h)
+        known = scheme.known_acceleration(acceleration, averaged)
+        way = scheme.predicted_displacement(velocity, averaged, known, h)
+        pace = scheme.predicted_velocity(velocity, averaged, known, h)
         new = -stiffness * (place + way) / (1.0 + stiffness * scheme.by_position(h))
         rows.append(
             (
                 pace + scheme.by_velocity(h) * new,
                 place + way + scheme.by_position(h) * new,
                 new,
-                carried + scheme.share * new,
+                known + scheme.share * new,
             )
         )
     return float(np.abs(np.linalg.eigvals(np.array(rows).T)).max())

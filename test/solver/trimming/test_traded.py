@@ -54,9 +54,9 @@ def test_a_range_that_is_not_usable_as_it_is_becomes_so(model: GearModel) -> Non
 @pytest.mark.parametrize(
     ('options', 'told'),
     [
-        (['--warp', '400', '--warps', '300', '600'], '--warp: found beside --warps'),
-        (['--speed', '1.5', '--speeds', '1.3', '1.7'], '--speed: found beside --speeds'),
-        (['--free', 'kites'], "found 'kites', expected of bridles, weights, floats, clump, boards"),
+        (['--warp', '400', '--warps', '300', '600'], '--warps'),
+        (['--speed', '1.5', '--speeds', '1.3', '1.7'], '--speeds'),
+        (['--free', 'kites'], "found 'kites'"),
     ],
 )
 def test_options_that_would_be_ignored_are_refused(options: list[str], told: str) -> None:
@@ -79,4 +79,4 @@ def test_a_copy_of_the_gear_file_has_what_was_found(coarse_gear: Path, tmp_path:
         assert seen.door_spread == pytest.approx(195.0, rel=0.03)
     again = CliRunner().invoke(trawl, [*command, '--out', str(out)])
     assert again.exit_code == 1
-    assert 'found a file, expected a new name' in again.output
+    assert str(out) in again.output

@@ -13,16 +13,15 @@ from trawl_ros.control.trial.records import (
     TrialTarget,
 )
 
-MOST_VISITS = 2
-"""Most visits to one state: what it tells is computed with a board that is only believed."""
+MAX_VISITS = 2
+"""Largest number of visits to one state, because its expected gain rests on uncertain boards."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """Choice: the best proposal that is allowed, None without one, and why others are not.
+    """Choice: the best allowed proposal, or None, and the reasons against the others.
 
-    ``refused`` counts proposals by reason; ``late`` is True if only the time that is left keeps
-    all of them from being chosen.
+    ``refused`` counts proposals by reason.
     """
 
     proposal: Proposal | None
@@ -30,7 +29,7 @@ class Choice:
 
     @property
     def late(self) -> bool:
-        """True if none is allowed, and some would be with more time."""
+        """True if none is allowed, but some would be with more time."""
         return self.proposal is None and self.refused['time'] > 0
 
     def __str__(self) -> str:
@@ -39,7 +38,7 @@ class Choice:
 
 
 def waiting_for_advice(knowledge: Knowledge, settings: TrialSettings, waited: float) -> str:
-    """Return what advice is lacking after ``waited`` seconds; '' where one may choose."""
+    """Return the missing advice after ``waited`` seconds; '' if a target can be chosen."""
     if knowledge.windows == 0:
         return 'for the first window'
     patient = waited < settings.advice_patience
@@ -48,7 +47,7 @@ def waiting_for_advice(knowledge: Knowledge, settings: TrialSettings, waited: fl
         return f'{wish}: {knowledge.trouble}' if knowledge.trouble else wish
     if knowledge.looked_up < settings.least_looked_up and patient:
         return (
-            f'until {100 * settings.least_looked_up:.0f} % of the manoeuvres are looked up; '
+            f'until {100 * settings.least_looked_up:.0f} % of the manoeuvres are computed; '
             f'{100 * knowledge.looked_up:.0f} % are'
         )
     return ''
@@ -73,11 +72,11 @@ def choose(
     settings
         Limits of tension, depth and distance from the seabed.
     here
-        Present state, which as it goes on would teach nothing.
+        Present state, which would give no new information.
     towed, struck
-        States that were towed, and targets that are not to be headed for.
+        States that were towed, and targets that were struck off.
     minutes_left
-        Of the trial.
+        Remaining time of the trial, min.
     seabed
         Depth (m) of the water here.
     """
@@ -106,7 +105,7 @@ def _objection(
         'teaches nothing': not proposal.rate > 0.0,
         'here already': target.near(here),
         'struck off': any(target.near(other) for other in struck),
-        'towed before': visits >= MOST_VISITS,
+        'towed before': visits >= MAX_VISITS,
         'speed': not settings.least_speed - 1e-6 <= target.speed <= settings.most_speed + 1e-6,
         'tension': proposal.tension > settings.max_tension,
         'depth': proposal.deepest > settings.max_depth,

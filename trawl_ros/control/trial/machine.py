@@ -1,7 +1,8 @@
-"""State machine of a trial: clock and readings in, commands and reasons out."""
+"""State machine of an autonomous trial: time and readings in, commands and reasons out."""
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 from trawl_ros.control.autopilot import Autopilot, AutopilotSettings, HoldHeading
 from trawl_ros.control.trial.choice import choose, waiting_for_advice
@@ -13,40 +14,99 @@ from trawl_ros.control.trial.records import (
     TrialState,
     TrialTarget,
 )
-from trawl_ros.control.trial.transit import Transit
 from trawl_ros.control.trial.watch import TrialWatch
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.geodesy import Datum
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import HeadingSample, Sample
 
-LONGEST_STEP_S = 2.0
-"""Commands change by no more at once than in this time, however long a gap was."""
+MAX_STEP_S = 2.0
+"""Longest time step of the commands, also after a longer gap."""
 
-PATIENCE = 1.5
-"""A state is left without its windows after this many times the minutes that it was to take."""
+MAX_TIME_RATIO = 1.5
+"""A state without enough windows is left after its expected time multiplied by this."""
 
-FIRST_MINUTES = 30.0
-"""Minutes that the first state, which nobody proposed, is to take."""
+FIRST_STATE_MINUTES = 30.0
+"""Expected time of the first state, which has no proposal."""
 
-RETREAT_S = 60.0
-"""Time at a limit after which the trial goes back to where it came from."""
+RETREAT_AFTER_S = 60.0
+"""Time at a limit after which the trial returns to the previous state."""
+
+MIN_PAY_OUT_M_S = 0.05
+"""Pay-out speed when the ship is at her least speed."""
 
 
-class Trial:
-    """Trial that runs itself.
+@dataclass(frozen=True)
+class Wanted:
+    """Wanted warp lengths (m) and speed (m/s) at one instant."""
 
-    Whoever runs it hands over samples (`take`) and what the estimator knows (`learn`), asks for
-    the command (`update`) several times a second, and keeps `memory` when it changes.
+    port: float
+    starboard: float
+    speed: float
+
+
+class Transit:
+    """Transit: wanted lengths and speed on the way to a target.
+
+    Warp is paid out only so fast that the gear keeps its least speed through the water; the ship
+    speeds up first. Warp is hauled at the winches' speed.
 
     Parameters
     ----------
     settings
-        Limits, rates, and what is wanted.
+        Rates and the range of speeds.
+    here
+        Present state of ship and winches.
+    """
+
+    def __init__(self, settings: TrialSettings, here: TrialTarget) -> None:
+        self.settings = settings
+        self.wanted = Wanted(here.port, here.starboard, here.speed)
+        self.target = here
+
+    @property
+    def arrived(self) -> bool:
+        """True if the wanted state is the target."""
+        wanted, target = self.wanted, self.target
+        return (wanted.port, wanted.starboard, wanted.speed) == (
+            target.port,
+            target.starboard,
+            target.speed,
+        )
+
+    def advance(self, dt: float, haul_share: float = 1.0) -> None:
+        """Advance by ``dt`` seconds; ``haul_share`` of the winches' speed is used to haul."""
+        settings, now, target = self.settings, self.wanted, self.target
+        left = (target.port - now.port, target.starboard - now.starboard)
+        speed = target.speed
+        if max(left) > 0.0:
+            veering = min(settings.least_speed + settings.winch_speed, settings.most_speed)
+            speed = max(speed, veering)
+        most = settings.ship_acceleration * dt
+        faster = now.speed + min(max(speed - now.speed, -most), most)
+        out = min(max(now.speed - settings.least_speed, MIN_PAY_OUT_M_S), settings.winch_speed) * dt
+        haul = settings.winch_speed * haul_share * dt
+        self.wanted = Wanted(
+            _towards(now.port, target.port, out, haul),
+            _towards(now.starboard, target.starboard, out, haul),
+            faster,
+        )
+
+
+class Trial:
+    """Autonomous trial.
+
+    The caller passes samples (`take`) and the state of the estimator (`learn`), requests the
+    command (`update`) several times a second, and saves `memory` when it changes.
+
+    Parameters
+    ----------
+    settings
+        Limits, rates and the goal.
     pressure_to_depth
-        Depth (m) for an absolute pressure (Pa).
+        Function that converts an absolute pressure (Pa) to a depth (m).
     memory
-        Of a trial that is to go on; by default one begins.
+        Memory of a trial to continue; by default a new trial begins.
     """
 
     def __init__(
@@ -68,38 +128,38 @@ class Trial:
         self._waits = 'for readings'
 
     def take(self, sample: Sample, now: int) -> None:
-        """Take a sample that came at a time (ns)."""
+        """Take a sample that arrived at a time (ns)."""
         self.watch.take(sample, now)
         if isinstance(sample, HeadingSample):
             self._pilot.take(sample)
 
     def learn(self, knowledge: Knowledge) -> None:
-        """Take what the estimator knows by now."""
+        """Take the present knowledge of the estimator."""
         self._knowledge = knowledge.after(self._knowledge)
 
     def change(self, settings: TrialSettings) -> None:
-        """Change the settings, which counts from the next update on."""
+        """Change the settings from the next update on."""
         self.settings = self.watch.settings = settings
         self._pilot.settings = AutopilotSettings(max_turn=settings.max_turn)
         if self._transit is not None:
             self._transit.settings = settings
 
     def pause(self) -> str:
-        """Stay where ship and winches are until `resume`."""
+        """Hold ship and winches until `resume`."""
         self._require_running()
         self._keep(mode='paused')
         return 'the trial is paused; ship and winches hold'
 
     def resume(self) -> str:
-        """Go on after `pause` or `take_over`, from where ship and winches are then."""
+        """Continue after `pause` or `take_over`, from the state of ship and winches then."""
         if self.memory.mode == 'sails':
-            raise TrawlError('the trial is sailing; expected it to be paused or taken over')
+            raise TrawlError('the trial is running; expected a paused or taken-over trial')
         self._keep(mode='sails')
         self._transit, self._waits = None, ''
-        return 'the trial goes on'
+        return 'the trial continues'
 
     def take_over(self, why: str = 'an operator has the command') -> str:
-        """Send no more commands until `resume`."""
+        """Stop sending commands until `resume`."""
         self._require_running()
         self._keep(mode='taken over')
         self._waits = why
@@ -110,15 +170,15 @@ class Trial:
         self._require_running()
         target = self.memory.target
         if self.memory.phase not in ('transit', 'tow') or target is None:
-            raise TrawlError('nothing to veto: the trial has no target just now')
+            raise TrawlError('nothing to veto: the trial has no target at present')
         self._strike_off()
         return f'{target} is struck off'
 
     def update(self, now: int, lost: Sequence[str] = ()) -> TrialCommand | None:
-        """Return the command at a time (ns), None where none is to be sent.
+        """Return the command at a time (ns), or None to send none.
 
-        ``lost`` names nodes that are not heard. When time goes back to before the beginning, the
-        trial begins anew.
+        ``lost`` names nodes that are silent. If time goes back to before the beginning, the trial
+        starts again.
         """
         dt = self._time_since(now)
         if self.memory.phase == 'done' or not self._ready(now, lost) or self._due():
@@ -133,7 +193,7 @@ class Trial:
             self._at_limit_s = self._at_limit_s + dt if new_limits else 0.0
             if not self._held:
                 self._sail(now, dt)
-            elif self._at_limit_s > RETREAT_S:
+            elif self._at_limit_s > RETREAT_AFTER_S:
                 self._retreat(at_limit)
         return self._command(now)
 
@@ -169,10 +229,10 @@ class Trial:
         before, self._now = self._now, now
         if self._hours() * 3600.0 < -1.0:
             self.memory, self._transit = TrialMemory(), None
-        return 0.0 if before is None else min(max((now - before) / SECOND, 0.0), LONGEST_STEP_S)
+        return 0.0 if before is None else min(max((now - before) / SECOND, 0.0), MAX_STEP_S)
 
     def _ready(self, now: int, lost: Sequence[str]) -> bool:
-        """True once readings are there; then ship and winches are taken over as they are."""
+        """Return True once all readings are there; take over ship and winches as they are."""
         if self._transit is not None:
             return True
         self._held = ()
@@ -180,13 +240,13 @@ class Trial:
             self._waits = f'for readings of {", ".join(missing)}'
             return False
         if stale := (*self.watch.stale(now), *(f'{name} is lost' for name in lost)):
-            self._waits = f'since {"; ".join(stale)}'
+            self._waits = f'because {"; ".join(stale)}'
             return False
         memory, here = self.memory, self.watch.here()
         self._transit = Transit(self.settings, here)
         if memory.began_s is None:
             self._keep(began_s=now / SECOND, target=here)
-            self._arrive(now, FIRST_MINUTES)
+            self._arrive(now, FIRST_STATE_MINUTES)
         elif memory.target is not None and memory.phase in ('transit', 'tow'):
             self._transit.target = memory.target
             if not here.near(memory.target):
@@ -194,7 +254,7 @@ class Trial:
         return True
 
     def _due(self) -> bool:
-        """True if the trial has just ended."""
+        """Return True if the trial has just ended."""
         settings = self.settings
         known = self._knowledge.known(settings.wanted_share)
         if known >= settings.wanted_known:
@@ -228,11 +288,11 @@ class Trial:
         memory = self.memory
         windows = self._knowledge.windows - memory.windows_before
         if windows < 0:
-            self._keep(windows_before=self._knowledge.windows)  # The estimator has begun anew.
+            self._keep(windows_before=self._knowledge.windows)  # The estimator has started again.
             return
         self._waits = f'for its windows ({windows} of {self.settings.windows})'
         minutes = (now / SECOND - memory.arrived_s) / 60.0
-        if windows < self.settings.windows and minutes < PATIENCE * memory.minutes:
+        if windows < self.settings.windows and minutes < MAX_TIME_RATIO * memory.minutes:
             return
         self.memory, self._waits = memory.left(now / SECOND, windows), 'for advice'
 
@@ -255,7 +315,7 @@ class Trial:
         if choice.proposal is not None:
             self._head_for(choice.proposal.target, choice.proposal.minutes)
         elif choice.late and knowledge.looked_up >= 1.0:
-            self._end('what is left of the time is too short for any manoeuvre')
+            self._end('the remaining time is too short for any manoeuvre')
         else:
             self._waits = str(choice)
 
@@ -270,19 +330,19 @@ class Trial:
         self.memory = self.memory.heading_for(target, minutes)
 
     def _strike_off(self) -> None:
-        """Leave the present target for good and hold until the next is chosen."""
+        """Strike off the present target and hold until the next one is chosen."""
         if self._transit is not None:
             self._transit.target = self._here()
         now_s = self.memory.arrived_s if self._now is None else self._now / SECOND
         self.memory = self.memory.struck_off(now_s)
 
     def _retreat(self, limits: tuple[str, ...]) -> None:
-        """Go back from a limit to where the ship came from, within it."""
+        """Return from a limit to the previous state."""
         if (origin := self.memory.origin) is None:
             return
         self._strike_off()
         self._retreat_from = limits
-        self._head_for(origin, FIRST_MINUTES)
+        self._head_for(origin, FIRST_STATE_MINUTES)
         self._keep(origin=None)
 
     def _command(self, now: int) -> TrialCommand:
@@ -297,3 +357,7 @@ class Trial:
             self._keep(heading=heading)
         self._pilot.steer(HoldHeading(heading))
         return self._pilot.turn_rate(now)
+
+
+def _towards(length: float, target: float, out: float, haul: float) -> float:
+    return length + min(max(target - length, -haul), out)

@@ -1,4 +1,4 @@
-"""Memory of a trial, with which one that was killed goes on."""
+"""Memory of a trial, with which a stopped trial can continue."""
 
 from pathlib import Path
 
@@ -9,25 +9,25 @@ from trawl_ros.core.schema import Record, load_yaml, validated
 
 
 class TowedState(Record):
-    """State that was towed, and the windows that it gave."""
+    """Towed state, and its number of windows."""
 
     target: TrialTarget
     windows: int
 
 
 class TrialMemory(Record):
-    """Memory of a trial, with which one that was killed goes on.
+    """Memory of a trial, with which a stopped trial can continue.
 
     Attributes
     ----------
     began_s, arrived_s
         Times (s) of the beginning of the trial and of the tow in the present state.
     phase, mode, target
-        As in `TrialState`.
+        Values of `TrialState`.
     origin
-        State from which the target is headed for.
+        State before the target, to which the trial can return.
     heading
-        Heading that is kept, ENU yaw, rad.
+        Heading to hold, ENU yaw, rad.
     minutes
         Expected duration of the present state.
     windows_before
@@ -35,9 +35,9 @@ class TrialMemory(Record):
     towed
         States that were towed.
     struck
-        Targets struck off: by a veto, a limit, or for want of windows.
+        Targets struck off by a veto, a limit, or because they gave no windows.
     reason
-        Reason for which the trial ended.
+        Reason for the end of the trial.
     """
 
     began_s: float | None = None
@@ -55,25 +55,25 @@ class TrialMemory(Record):
 
     @property
     def last_good(self) -> TrialTarget | None:
-        """State that was towed last, or the origin where it gave no window."""
+        """Last towed state, or the origin if it gave no window."""
         if self.towed and self.towed[-1].windows:
             return self.towed[-1].target
         return self.origin
 
     def changed(self, **changes: object) -> 'TrialMemory':
-        """Memory with other values of some attributes."""
+        """Return the memory with changed attributes."""
         return self.model_copy(update=changes)
 
     def heading_for(self, target: TrialTarget, minutes: float) -> 'TrialMemory':
-        """Memory on the way to a target."""
+        """Return the memory on the way to a target."""
         return self.changed(phase='transit', origin=self.last_good, target=target, minutes=minutes)
 
     def arrived(self, now_s: float, minutes: float, windows: int) -> 'TrialMemory':
-        """Memory on arrival at the target, when the estimator has used so many windows."""
+        """Return the memory on arrival, when the estimator has used this many windows."""
         return self.changed(phase='tow', arrived_s=now_s, minutes=minutes, windows_before=windows)
 
     def left(self, now_s: float, windows: int) -> 'TrialMemory':
-        """Memory after the tow in the target's state; without windows it is struck off."""
+        """Return the memory after the tow at the target, struck off without windows."""
         assert self.target is not None
         state = TowedState(target=self.target, windows=windows)
         struck = self.struck if windows else (*self.struck, self.target)
@@ -82,13 +82,13 @@ class TrialMemory(Record):
         )
 
     def struck_off(self, now_s: float) -> 'TrialMemory':
-        """Memory after the target was struck off, before the next is chosen."""
+        """Return the memory after the target was struck off."""
         struck = (*self.struck, self.target)
         return self.changed(phase='advice', target=None, struck=struck, arrived_s=now_s)
 
 
 def save_memory(path: Path, memory: TrialMemory) -> None:
-    """Save a memory as JSON, whole or not at all.
+    """Save a memory as JSON, completely or not at all.
 
     Raises
     ------
@@ -104,12 +104,12 @@ def load_memory(path: Path) -> TrialMemory:
     Raises
     ------
     TrawlError
-        If the file cannot be read, or is no memory of a trial.
+        If the file cannot be read, or is not the memory of a trial.
     """
     memory = validated(TrialMemory, load_yaml(path, TrawlError), path, TrawlError)
-    # The file will be replaced, and a foreign one may have a few of the keys, or none.
+    # The trial will replace this file, so refuse a foreign one with only some of the keys.
     if missing := sorted(TrialMemory.model_fields.keys() - memory.model_fields_set):
         raise TrawlError(
-            f'{path}: found no {missing[0]}, expected the memory of a trial, or a new path'
+            f'{path}: found no {missing[0]}, expected the memory of a trial or a new path'
         )
     return memory

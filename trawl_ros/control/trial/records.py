@@ -8,11 +8,11 @@ from typing import Literal
 from trawl_ros.core.schema import Record
 
 Phase = Literal['start', 'transit', 'tow', 'advice', 'done']
-"""Phases: until readings are there; on the way to a target; towed steadily until its windows are
-taken; steady until the next target is chosen; and at the end."""
+"""Phases: waiting for readings; on the way to a target; steady tow until its windows are taken;
+steady tow until the next target is chosen; and end."""
 
 Mode = Literal['sails', 'paused', 'taken over']
-"""Modes: the trial has the command; it has it and is told to stay; an operator has it."""
+"""Modes: the trial has command; it has command and holds; an operator has command."""
 
 
 class TrialTarget(Record):
@@ -23,7 +23,7 @@ class TrialTarget(Record):
     speed: float
 
     def near(self, other: 'TrialTarget', metres: float = 2.0, speed: float = 0.05) -> bool:
-        """True if another target is the same within these tolerances (m, m/s)."""
+        """Return True if another target is the same within these tolerances (m, m/s)."""
         return (
             abs(self.port - other.port) <= metres
             and abs(self.starboard - other.starboard) <= metres
@@ -41,9 +41,9 @@ class TrialTarget(Record):
 class Proposal:
     """Proposal: a target, and what the estimator expects of it.
 
-    ``minutes`` from now until its windows are taken, ``nats`` of information gained, ``rate`` by
-    which proposals are ranked, predicted ``tension`` (N) of the tauter warp and depth (m) of the
-    gear's ``deepest`` point.
+    ``minutes`` is the time until its windows are taken, ``nats`` the expected information, ``rate``
+    the criterion of the ranking, ``tension`` (N) that of the tauter warp, and ``deepest`` (m) the
+    depth of the gear's deepest point.
     """
 
     target: TrialTarget
@@ -61,17 +61,17 @@ class Knowledge:
     Attributes
     ----------
     windows
-        Number that it has used.
+        Number of windows that it has used.
     ratios
-        Std of each quantity of the laws over its span, by name; empty while not known.
+        Std of each quantity of the laws relative to its span, by name; empty if unknown.
     advised
-        Number of windows on which the proposals rest.
+        Number of windows on which the proposals are based.
     looked_up
-        Share of all manoeuvres among which was chosen.
+        Fraction of all manoeuvres that have been computed.
     proposals
         Ranked, the best one first.
     trouble
-        Error of the advice, '' for none.
+        Error of the advice, '' without one.
     """
 
     windows: int = 0
@@ -82,11 +82,11 @@ class Knowledge:
     trouble: str = ''
 
     def known(self, share: float) -> int:
-        """Number of quantities whose std is below this share of their span."""
+        """Return the number of quantities with a std below this fraction of their span."""
         return sum(ratio <= share for ratio in self.ratios.values())
 
     def after(self, before: 'Knowledge') -> 'Knowledge':
-        """Return this knowledge, with the proposals from before where it has none of its own."""
+        """Return this knowledge, with the earlier proposals if it has none."""
         if self.proposals or not self.windows:
             return self
         return replace(
@@ -105,26 +105,25 @@ class TrialSettings:
     Attributes
     ----------
     hours
-        Time for the trial, h.
+        Duration of the trial, h.
     wanted_share, wanted_known
-        It ends when so many quantities of the laws have a std below this share of their span.
+        The trial ends when this many quantities have a std below this fraction of their span.
     max_tension, max_depth, seabed, clearance
-        Limits: tension (N) of a warp, depth (m) of the gear, depth (m) of the water where no
-        sounder says it, and least distance (m) of the gear from the seabed; infinite without.
+        Limits: tension (N) of a warp, depth (m) of the gear, depth (m) of the water without an
+        echo sounder, and least distance (m) of the gear from the seabed; infinite for no limit.
     max_turn
         Fastest rate of turn, rad/s.
     winch_speed, ship_acceleration
         Rates at which commands change, m/s and m/s².
     least_speed, most_speed
-        Range of towing speeds, m/s: while warp runs out, the gear is to be no slower than the
-        lower one.
+        Range of towing speeds, m/s; while warp is paid out, the gear keeps at least the lower one.
     windows
-        Windows that are taken in each state.
+        Number of windows in each state.
     least_looked_up, advice_patience
-        No target is chosen before the advice rests on all windows and so much of the manoeuvres is
-        looked up, or so many seconds have gone by.
+        A target is chosen only when the advice is based on all windows and on this fraction of the
+        manoeuvres, or after this many seconds.
     stale
-        Age (s) at which a reading is stale, where it usually comes more often.
+        Age (s) at which a reading is stale, if it usually comes more often.
     """
 
     hours: float = 6.0
@@ -159,9 +158,9 @@ class TrialCommand:
 class TrialState:
     """Report of a trial.
 
-    ``phase`` and ``mode`` as in `Phase` and `Mode`; ``held`` are the reasons for which it holds,
-    ``waits`` says for what it waits; ``known`` of the quantities asked for, ``hours`` since the
-    beginning; ``towed`` counts states with windows, ``struck`` those struck off.
+    ``phase`` and ``mode`` are those of `Phase` and `Mode`. ``held`` are the reasons for holding,
+    and ``waits`` is what the trial waits for. ``known`` counts the determined quantities, ``hours``
+    the time since the beginning, ``towed`` the towed states and ``struck`` the struck-off targets.
     """
 
     phase: Phase

@@ -1,4 +1,4 @@
-"""Watch of a trial over readings: stale and frozen ones, and limits that are reached."""
+"""Checks of a trial's readings: stale and frozen sensors, and reached limits."""
 
 import math
 from collections import deque
@@ -13,34 +13,49 @@ from trawl_ros.records.channels import Reading, readings
 from trawl_ros.records.samples import RangeSample, Sample
 
 NEEDED = ('port_length', 'starboard_length', 'port_tension', 'starboard_tension', 'speed')
-"""Channels without which a trial does not begin."""
+"""Channels that a trial needs to begin."""
 
 WATCHED = (*NEEDED, 'port_door_depth', 'starboard_door_depth', 'net_depth', 'heading')
-"""Channels that are stale when they fall silent, the others once they have been heard."""
+"""Channels that can be stale; those beyond `NEEDED` only after their first reading."""
 
 DEPTHS = ('port_door_depth', 'starboard_door_depth', 'net_depth')
-LIVELY = ('port_tension', 'starboard_tension', 'speed')
-"""Channels whose readings always scatter."""
+SCATTERING = ('port_tension', 'starboard_tension', 'speed')
+"""Channels whose readings always scatter, so that equal ones mean a frozen sensor."""
 
-FROZEN = 12
-"""So many readings that are the same to the last digit come of a sensor that is frozen."""
 
-LATE_PERIODS = 1.5
-"""A reading is stale when it is older than this many of its usual periods."""
+@dataclass(frozen=True)
+class WatchOptions:
+    """Options of the checks.
 
-ECHO_SILENCE_S = 60.0
-"""An echo of the seabed older than this is not counted on; sooner it may just be lost."""
+    Attributes
+    ----------
+    frozen_readings
+        Number of exactly equal readings of a frozen sensor.
+    late_periods
+        Age of a stale reading in usual periods.
+    max_echo_age_s
+        Age after which an echo of the seabed is not used; shorter losses are common.
+    max_counter_lag_m, max_counter_error
+        Lag and relative error of a counter that still follows.
+    period_readings, median_readings
+        Number of readings for the usual period, and for the median that is the value.
+    """
 
-FOLLOW_M, FOLLOW_SHARE = 5.0, 0.05
-"""A counter may lag by so much, and be wrong by this share."""
+    frozen_readings: int = 12
+    late_periods: float = 1.5
+    max_echo_age_s: float = 60.0
+    max_counter_lag_m: float = 5.0
+    max_counter_error: float = 0.05
+    period_readings: int = 15
+    median_readings: int = 3
 
-USUAL = 15
-RECENT = 3
+
+OPTIONS = WatchOptions()
 
 
 @dataclass
 class _Channel:
-    """Recent readings of a channel: values, stamps, and how late they came (s)."""
+    """Recent readings of a channel: values, stamps and delays (s)."""
 
     values: deque[float]
     stamps: deque[int]
@@ -49,7 +64,8 @@ class _Channel:
 
     @classmethod
     def empty(cls) -> '_Channel':
-        return cls(deque(maxlen=RECENT), deque(maxlen=USUAL), deque(maxlen=USUAL))
+        recent, usual = OPTIONS.median_readings, OPTIONS.period_readings
+        return cls(deque(maxlen=recent), deque(maxlen=usual), deque(maxlen=usual))
 
     def take(self, value: float, stamp: int, now: int) -> None:
         self.same = self.same + 1 if self.values and value == self.values[-1] else 1
@@ -59,11 +75,11 @@ class _Channel:
 
     @property
     def value(self) -> float:
-        """Median of the last few, which one outlier does not move; NaN before any."""
+        """Median of the last few readings, robust against an outlier; NaN before any."""
         return median(self.values) if self.values else math.nan
 
     def age(self, now: int) -> float:
-        """Time (s) since the last reading, less what it usually takes to come."""
+        """Return the time (s) since the last reading, minus its usual delay."""
         return (now - self.stamps[-1]) / SECOND - max(median(self.lags), 0.0)
 
     @property
@@ -74,14 +90,14 @@ class _Channel:
 
 
 class TrialWatch:
-    """Watch over the readings of a trial.
+    """Checks of the readings of a trial.
 
     Parameters
     ----------
     settings
-        Limits, and when a reading is stale.
+        Limits, and the age of stale readings.
     pressure_to_depth
-        Depth (m) for an absolute pressure (Pa).
+        Function that converts an absolute pressure (Pa) to a depth (m).
     """
 
     def __init__(
@@ -92,7 +108,7 @@ class TrialWatch:
         self._channels: dict[str, _Channel] = {}
 
     def take(self, sample: Sample, now: int) -> None:
-        """Take a sample that came at a time (ns)."""
+        """Take a sample that arrived at a time (ns)."""
         if isinstance(sample, RangeSample):
             self._take(Reading(sample.what, sample.stamp, sample.distance, 0.0), now)
         for reading in readings(sample, self._pressure_to_depth):
@@ -113,7 +129,7 @@ class TrialWatch:
         return tuple(name for name in NEEDED if name not in self._channels)
 
     def here(self) -> TrialTarget:
-        """Return where counters and log say that the ship is; only if nothing is `missing`."""
+        """Return the present state by counters and log; only if nothing is `missing`."""
         return TrialTarget(
             port=round(self.value('port_length'), 1),
             starboard=round(self.value('starboard_length'), 1),
@@ -121,35 +137,36 @@ class TrialWatch:
         )
 
     def stale(self, now: int) -> tuple[str, ...]:
-        """Return what is wrong with readings at a time (ns), in sentences."""
+        """Return stale and frozen readings at a time (ns), in sentences."""
         found = []
         for name in WATCHED:
             channel = self._channels.get(name)
             if channel is None:
                 continue
             age = channel.age(now)
-            if age > max(self.settings.stale, LATE_PERIODS * channel.period):
+            if age > max(self.settings.stale, OPTIONS.late_periods * channel.period):
                 found.append(f'{name} is stale')
-            elif name in LIVELY and channel.same >= FROZEN:
+            elif name in SCATTERING and channel.same >= OPTIONS.frozen_readings:
                 found.append(f'{name} is frozen')
         return tuple(found)
 
     def not_following(self, wanted: TrialTarget) -> tuple[str, ...]:
-        """Return which winches are not where they are wanted, in sentences."""
+        """Return the winches that do not follow their commands, in sentences."""
         lengths = (('port', wanted.port), ('starboard', wanted.starboard))
+        lag, error = OPTIONS.max_counter_lag_m, OPTIONS.max_counter_error
         return tuple(
             f'{side} winch does not follow'
             for side, length in lengths
-            if abs(self.value(f'{side}_length') - length) > FOLLOW_M + FOLLOW_SHARE * length
+            if abs(self.value(f'{side}_length') - length) > lag + error * length
         )
 
     def water_depth(self, now: int) -> float:
-        """Return the depth (m) of the water: by the sounder, else as set; infinite without."""
+        """Return the depth (m) of the water by echo sounder or setting; infinite without."""
         echo = self._echo('depth', now)
         return self.settings.seabed if math.isnan(echo) else min(echo, self.settings.seabed)
 
     def limits(self, now: int) -> tuple[str, ...]:
-        """Return the limits that are reached, in sentences."""
+        """Return the reached limits, in sentences."""
         settings, found = self.settings, []
         for side in ('port', 'starboard'):
             if self.value(f'{side}_tension') > settings.max_tension:
@@ -163,13 +180,13 @@ class TrialWatch:
         distance = min((self.water_depth(now) - deepest, above), key=_nan_last)
         if distance < settings.clearance:
             found.append(f'gear less than {settings.clearance:g} m above the seabed')
-        # A gear is not straight behind a ship that turns faster than she is told to.
+        # In a faster turn than commanded the gear is not straight behind the ship.
         if abs(self.value('yaw_rate')) > 2.0 * settings.max_turn:
             found.append(f'ship turns faster than {math.degrees(2 * settings.max_turn):.2f} deg/s')
         return tuple(found)
 
     def haul_share(self) -> float:
-        """Return the share of the winches' speed that the tension leaves for hauling."""
+        """Return the fraction of the winches' speed for hauling, less near the largest tension."""
         most = self.settings.max_tension
         if math.isinf(most):
             return 1.0
@@ -178,7 +195,7 @@ class TrialWatch:
 
     def _echo(self, name: str, now: int) -> float:
         channel = self._channels.get(name)
-        if channel is None or channel.age(now) > ECHO_SILENCE_S:
+        if channel is None or channel.age(now) > OPTIONS.max_echo_age_s:
             return math.nan
         return channel.value
 

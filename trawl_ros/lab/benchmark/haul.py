@@ -16,7 +16,14 @@ from trawl_ros.simulation.ship import Ship, Winch
 from trawl_ros.simulation.simulation import tow_of
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
-from trawl_ros.solver.stepper import Motion, StepFailed, Stepper, at_rest
+from trawl_ros.solver.stepper import (
+    STEPPER_OPTIONS,
+    Motion,
+    StepFailed,
+    Stepper,
+    StepperOptions,
+    at_rest,
+)
 
 FROM, TO = Command(500.0, 500.0, 2.1), Command(400.0, 400.0, 1.9)
 """100 m are hauled as fast as the winches can, while the ship slows down."""
@@ -70,7 +77,12 @@ class HaulManoeuvre:
         """Duration of the manoeuvre, s."""
         return FINEST_S * (len(self.tows) - 1)
 
-    def run(self, step_s: float, look_every_s: float = LOOK_EVERY_S) -> 'Ride':
+    def run(
+        self,
+        step_s: float,
+        look_every_s: float = LOOK_EVERY_S,
+        options: StepperOptions = STEPPER_OPTIONS,
+    ) -> 'Ride':
         """Run the manoeuvre in steps of one length.
 
         A step that does not converge is taken in two halves, as in `Simulation`.
@@ -83,7 +95,7 @@ class HaulManoeuvre:
         stride = round(step_s / FINEST_S)
         looks = math.ceil(look_every_s / step_s - 1e-9)
         columns = [OBSERVABLES.index(name) for name in WATCHED]
-        stepper, motion = Stepper(self.model), self.start
+        stepper, motion = Stepper(self.model, options), self.start
         seen = []
         for number, at in enumerate(range(stride, len(self.tows), stride), 1):
             motion = self._advanced(stepper, motion, at, stride)

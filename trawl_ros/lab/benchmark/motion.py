@@ -1,4 +1,4 @@
-"""Estimates from all of a tow in motion, with the model as its own plant: are they calibrated?"""
+"""Calibration of estimates from all of a tow in motion, with the model as its own plant."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -1,1 +1,1 @@
-"""Advice on refused tows, and the changes of a rigging that it is sought among."""
+"""Advice on refused tows, and the changes of a rigging that it may propose."""

@@ -13,10 +13,10 @@ POINTS = "the warp's point", "the upper bridle's point", "the lower bridle's poi
 """Fastening points of a board in the order of the gear file."""
 
 KINDS = 'bridles', 'weights', 'floats', 'clump', 'boards'
-"""Kinds of changes that a trim may be allowed: weights and floats on ropes, clump at the tips."""
+"""Kinds of changes that a user may allow: weights and floats on ropes, clump at the tips."""
 
 MOVES = {0: ('forward', 'aft'), 2: ('up', 'down')}
-"""Directions of a point's coordinates, with their sign; those off the face are the board's make."""
+"""Directions of a point's coordinates by sign; the distance from the face is fixed by the board."""
 
 
 @dataclass(frozen=True)
@@ -26,15 +26,15 @@ class RigChange:
     Attributes
     ----------
     kind
-        Of what is changed: `KINDS`, ``points`` or ``warp``.
+        One of `KINDS`, ``points`` or ``warp``.
     step
-        A small amount, for derivatives.
+        Small amount, for derivatives.
     most
-        Largest amount that is thought of.
+        Largest amount that is considered.
     gear, model, warp
-        Gear file, model and length of warp after a change; a change has one of them.
+        Functions that return gear record, model or warp length after a change; one is given.
     told
-        Words for an amount.
+        Function that describes an amount in words.
     """
 
     kind: str
@@ -48,7 +48,7 @@ class RigChange:
     def applied(
         self, model: GearModel, warp_length: float, amount: float
     ) -> tuple[GearModel, float]:
-        """Gear and warp length (m) after a change; the net's nodes and bars stay the same."""
+        """Return gear and warp length (m) after a change; the net keeps its nodes and bars."""
         if self.model is not None:
             return self.model(model, amount), warp_length
         if self.warp is not None:
@@ -57,7 +57,7 @@ class RigChange:
         return rebuilt(model, self.gear(model.gear, amount)), warp_length
 
     def recorded(self, gear: GearRecord, amount: float) -> GearRecord:
-        """The gear file after a change of what hangs, of bridles or of the boards' mass."""
+        """Return the gear record after a change of weights, floats, bridles or the boards' mass."""
         if self.kind == 'boards':
             board = gear.board.model_copy(update={'mass_kg': gear.board.mass_kg + amount})
             return gear.model_copy(update={'board': board})
@@ -66,7 +66,7 @@ class RigChange:
 
 
 def rebuilt(model: GearModel, gear: GearRecord) -> GearModel:
-    """The model of a changed gear with the same nodes and bars; board and coefficients stay."""
+    """Build the model of a changed gear with the same nodes, bars, board and coefficients."""
     return replace(
         build_model(gear),
         board=model.board,
@@ -76,7 +76,7 @@ def rebuilt(model: GearModel, gear: GearRecord) -> GearModel:
 
 
 def rig_changes(gear: GearRecord) -> tuple[RigChange, ...]:
-    """All changes that a gear's rigging allows."""
+    """Return all changes that a gear's rigging allows."""
     boards = () if gear.pair is not None else (board_change(gear),)
     return (
         *hung_changes(gear),
@@ -88,7 +88,7 @@ def rig_changes(gear: GearRecord) -> tuple[RigChange, ...]:
 
 
 def changes_of(gear: GearRecord, kinds: Sequence[str]) -> tuple[RigChange, ...]:
-    """Changes of these `KINDS`.
+    """Return the changes of these `KINDS`.
 
     Raises
     ------
@@ -100,13 +100,13 @@ def changes_of(gear: GearRecord, kinds: Sequence[str]) -> tuple[RigChange, ...]:
     for kind in kinds:
         if kind not in there:
             raise GearError(
-                f"'{gear.name}' has no {kind} that could be changed, expected of {', '.join(there)}"
+                f"'{gear.name}' has no {kind} to change, expected one of {', '.join(there)}"
             )
     return tuple(change for change in every if change.kind in kinds)
 
 
 def hung_changes(gear: GearRecord) -> tuple[RigChange, ...]:
-    """Changes of what hangs on ropes and wing tips, as shares of what is there."""
+    """Return relative changes of weights and floats on ropes and wing tips."""
     found = []
     for number, item in enumerate(gear.hung):
         if item.force_on(1.0) == 0.0:  # a kite alone
@@ -123,7 +123,7 @@ def hung_changes(gear: GearRecord) -> tuple[RigChange, ...]:
 
 
 def bridle_changes(gear: GearRecord) -> tuple[RigChange, ...]:
-    """Changes of the bridles' lengths, by m; upper and lower ones of either side alike."""
+    """Return changes of the bridles' lengths, in m, equal on both sides."""
     found = []
     for own in gear.bridles:
         length = gear.bridle_of(own).length_m
@@ -145,7 +145,7 @@ def bridle_changes(gear: GearRecord) -> tuple[RigChange, ...]:
 
 
 def point_changes(gear: GearRecord) -> tuple[RigChange, ...]:
-    """Moves of the fastening points along the chord and the span, by m."""
+    """Return moves of the fastening points along the chord and the span, in m."""
     if gear.pair is not None:
         return ()
     found = []
@@ -169,7 +169,7 @@ def point_changes(gear: GearRecord) -> tuple[RigChange, ...]:
 
 
 def board_change(gear: GearRecord) -> RigChange:
-    """Change of the boards' mass, by kg; their size and inertia stay."""
+    """Return the change of the boards' mass, in kg; their size and inertia stay."""
 
     def told(amount: float) -> str:
         newtons = abs(amount) * gear.water.gravity_m_s2

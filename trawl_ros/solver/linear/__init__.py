@@ -1,1 +1,1 @@
-"""Linear algebra of the solver: factors of sparse matrices, and eigenvalues of operators."""
+"""Multifrontal factorisation of the gear's sparse matrices, and the budget of a search."""

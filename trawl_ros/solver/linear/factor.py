@@ -11,25 +11,23 @@ from scipy.sparse.linalg import SuperLU, splu
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.core.memory import keep_freed_memory
 from trawl_ros.model.pattern import SparsityPattern
-from trawl_ros.solver.frontal.elimination import Elimination, elimination
-from trawl_ros.solver.frontal.fronts import factorise, solve
-from trawl_ros.solver.frontal.many_rights import solve_many
+from trawl_ros.solver.linear.elimination import Elimination, elimination
+from trawl_ros.solver.linear.fronts import factorise, solve, solve_many
 from trawl_ros.solver.linear.search_budget import spend
 
-PIVOT_THRESHOLD = 0.01
-"""Least ratio of a diagonal pivot to the largest of its column with which SuperLU keeps it."""
+MIN_DIAGONAL_PIVOT_RATIO = 0.01
+"""SuperLU keeps a diagonal pivot that is at least this share of the largest of its column."""
 
-BACKWARD_ERROR = 1e-10
-"""Residual of the first solution, as a share of matrix times solution, from which the pivots of a
-fixed order are not trusted and SuperLU chooses its own."""
+MAX_BACKWARD_ERROR = 1e-10
+"""Relative residual of the first solution above which SuperLU refactorises with its own pivots."""
 
-ROUNDING = 1e-14
-"""Such a share is that of rounding: with the default gear it stays below 2.5e-15."""
+ROUNDING_BACKWARD_ERROR = 1e-14
+"""Relative residual that is explained by rounding; the default gear stays below 2.5e-15."""
 
 keep_freed_memory()
 
-MANY = 5
-"""So many right-hand sides are solved faster side by side than one after another."""
+MIN_RIGHTS_FOR_PANELS = 5
+"""Number of right-hand sides from which panels are faster than one solution after another."""
 
 
 @dataclass
@@ -62,8 +60,8 @@ class Factor:
         return pivoted
 
     def _solved(self, right: FloatArray) -> FloatArray:
-        """Solution by the pivots of the fixed order."""
-        if right.ndim > 1 and right.shape[1] >= MANY:
+        """Return the solution by the pivots of the fixed order."""
+        if right.ndim > 1 and right.shape[1] >= MIN_RIGHTS_FOR_PANELS:
             side_by_side = np.empty_like(right, order='C')
             solve_many(np.ascontiguousarray(right), *self._factors, side_by_side)
             return side_by_side
@@ -74,17 +72,18 @@ class Factor:
         return found
 
     def _holds(self, right: FloatArray, solution: FloatArray) -> bool:
-        return self.backward_error(right, solution) <= BACKWARD_ERROR
+        return self.backward_error(right, solution) <= MAX_BACKWARD_ERROR
 
     def backward_error(self, right: FloatArray, solution: FloatArray) -> float:
-        """Residual of a solution (dof,), as a share of matrix times solution."""
+        """Return the residual of a solution (dof,) relative to matrix times solution."""
+        # ‖A x - b‖ / (‖A‖ ‖x‖ + ‖b‖) in maximum norms (Rigal and Gaches 1967).
         left = float(np.abs(self.pattern.times(self.data, solution) - right).max())
         scale = self._largest * float(np.abs(solution).max()) + float(np.abs(right).max())
         return left / scale if scale > 0.0 else left
 
     @cached_property
     def _largest(self) -> float:
-        """Largest entry of the matrix."""
+        """Return the largest entry of the matrix."""
         if self.data.dtype.kind == 'c':
             return float(np.abs(self.data).max())
         return float(max(self.data.max(), -self.data.min()))
@@ -96,7 +95,7 @@ class Factor:
 
 
 def factorised(pattern: SparsityPattern, data: FloatArray) -> Factor:
-    """LU factors of the matrix of ``data`` on a gear's pattern.
+    """Factorise the matrix of ``data`` on a gear's pattern.
 
     Raises
     ------
@@ -125,12 +124,12 @@ def factorised(pattern: SparsityPattern, data: FloatArray) -> Factor:
 
 @lru_cache(maxsize=8)
 def _workspace(found: Elimination, kind: np.dtype[np.float64]) -> tuple[FloatArray, FloatArray]:
-    """Borders that wait for their parents, and the fronts at work."""
+    """Return space for update matrices that wait for their parents, and for two fronts."""
     return np.empty(found.waiting, kind), np.empty((2, found.largest**2), kind)
 
 
 def factorised_part(matrix: sp.csc_matrix) -> SuperLU:
-    """LU factors of a part of such a matrix, by SuperLU.
+    """Factorise a part of such a matrix with SuperLU.
 
     Raises
     ------
@@ -140,19 +139,18 @@ def factorised_part(matrix: sp.csc_matrix) -> SuperLU:
     return splu(
         matrix,
         permc_spec='MMD_AT_PLUS_A',
-        diag_pivot_thresh=PIVOT_THRESHOLD,
+        diag_pivot_thresh=MIN_DIAGONAL_PIVOT_RATIO,
         options={'SymmetricMode': True},
     )
 
 
 def solve_refined(factor: Factor, right: FloatArray) -> FloatArray:
-    """Solve for (dof, k) right-hand sides to rounding.
+    """Solve for (dof, k) right-hand sides to rounding, with one step of iterative refinement.
 
-    As a rule the factors are as good as that; where the weaker pivots have cost digits, a step of
-    refinement makes up for them.
+    The step is only taken where weak pivots have cost digits, which is rare.
     """
     solution = factor.solve(right)
     worst = int(np.abs(solution).max(axis=0).argmax())
-    if factor.backward_error(right[:, worst], solution[:, worst]) <= ROUNDING:
+    if factor.backward_error(right[:, worst], solution[:, worst]) <= ROUNDING_BACKWARD_ERROR:
         return solution
     return solution + factor.solve(right - factor.pattern.matrix(factor.data) @ solution)

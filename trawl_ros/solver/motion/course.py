@@ -1,8 +1,7 @@
 """Towing boundary of a gear along given inputs, with its derivatives by parameters.
 
-Warp lengths and speed are given as counters and log show them; the effects that act say what is
-true. The ship's way is the integral of her speed, by the trapezoidal rule from step to step, and so
-are its derivatives.
+Warp lengths and speed are given as counters and log show them; the effects that act give the true
+values. The trapezoidal rule integrates the ship's velocity and its derivatives from step to step.
 """
 
 from collections.abc import Callable
@@ -20,11 +19,11 @@ from trawl_ros.model.state import Tow, TowSlopes
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.operating_point import block_offsets
 
-VALUE_PART = 1e-4
-"""Differences by an effect's value are taken over this part of its std."""
+STD_FRACTION_OF_DIFFERENCES = 1e-4
+"""Step of central differences by an effect's value, as a fraction of its std."""
 
 RATE_STEP_S = 0.1
-"""Differences along the rates of the inputs are taken over so long."""
+"""Step of differences along the rates of the inputs, s."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +37,9 @@ class InputPoint:
     heading, yaw_rate
         ENU yaw (rad) and rate of turn (rad/s).
     hours
-        Since the tow began.
+        Time since the tow began, h.
     errors, error_rates
-        Additions (k, 3) to inputs and rates by one unit of each of `MotionParameters.inputs`.
+        Changes (k, 3) of inputs and rates per unit of each of `MotionParameters.inputs`.
     """
 
     inputs: FloatArray
@@ -61,7 +60,7 @@ class InputPoint:
 
 @dataclass(frozen=True)
 class ShipWay:
-    """Way of the ship: position (3,) midway between the blocks, and its derivatives (m, 3)."""
+    """Position (3,) of the ship midway between the blocks, and its derivatives (m, 3)."""
 
     position: FloatArray
     slopes: FloatArray
@@ -69,8 +68,9 @@ class ShipWay:
 
 @dataclass(frozen=True)
 class CoursePoint:
-    """Towing boundary at one instant with its derivatives, and the ship's velocity (3,) with its
-    derivatives (m, 3) beside her way.
+    """Towing boundary at one instant, the ship's position and velocity, and their derivatives.
+
+    ``velocity`` (3,) has derivatives ``velocity_slopes`` (m, 3).
     """
 
     tow: Tow
@@ -88,16 +88,16 @@ def course_point(
     before: CoursePoint | None = None,
     h: float = 0.0,
 ) -> CoursePoint:
-    """Towing boundary at one instant.
+    """Return the towing boundary at one instant.
 
     Parameters
     ----------
     model
-        The gear; its water flows over ground at the surface as it says.
+        The gear; its surface current adds to the speed through the water.
     acting
-        Effects that are there.
+        Effects that act on the gear.
     parameters
-        Of the derivatives.
+        Parameters of the derivatives.
     point
         Inputs at this instant.
     before, h
@@ -131,7 +131,7 @@ def course_point(
 
 
 def _true(acting: EffectSet, point: InputPoint) -> tuple[FloatArray, FloatArray]:
-    """True inputs and their rates, both (3,)."""
+    """Return the true inputs and their rates, both (3,)."""
     if not acting.on_inputs:
         return point.inputs, point.rates
     inputs = acting.apply_to_inputs(point.inputs, point.situation)
@@ -139,22 +139,22 @@ def _true(acting: EffectSet, point: InputPoint) -> tuple[FloatArray, FloatArray]
 
 
 def _along(acting: EffectSet, point: InputPoint, direction: FloatArray) -> FloatArray:
-    """Change (3,) of the true inputs with a change (3,) of the shown ones."""
-    up, down = _beside(acting, point, direction)
+    """Return the change (3,) of the true inputs with a change (3,) of the shown ones."""
+    up, down = _neighbours(acting, point, direction)
     change: FloatArray = (up - down) / (2.0 * RATE_STEP_S)
     return change
 
 
-def _true_beside(acting: EffectSet, point: InputPoint) -> FloatArray:
-    """True inputs and their rates (2, 3), the former as a mean of those beside."""
-    up, down = _beside(acting, point, point.rates)
+def _mean_true(acting: EffectSet, point: InputPoint) -> FloatArray:
+    """Return the true inputs and their rates (2, 3), from a time step before and after."""
+    up, down = _neighbours(acting, point, point.rates)
     return np.array([0.5 * (up + down), (up - down) / (2.0 * RATE_STEP_S)])
 
 
-def _beside(
+def _neighbours(
     acting: EffectSet, point: InputPoint, direction: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """True inputs (3,) a little before and behind along a direction (3,) of the shown ones."""
+    """Return the true inputs (3,) a step ahead and behind along a direction of the shown ones."""
     at, step = point.situation, RATE_STEP_S * direction
     up = acting.apply_to_inputs(point.inputs + step, at)
     return up, acting.apply_to_inputs(point.inputs - step, at)
@@ -163,13 +163,13 @@ def _beside(
 def _slopes(
     acting: EffectSet, parameters: MotionParameters, point: InputPoint
 ) -> tuple[FloatArray, FloatArray]:
-    """Derivatives (m, 3) of the true inputs and of their rates by the parameters."""
+    """Return derivatives (m, 3) of the true inputs and of their rates by the parameters."""
     by_inputs, by_rates = np.zeros((2, len(parameters), 3))
     first = parameters.of_effects.start
     for effect in parameters.effects:
         last = first + len(effect.parameters)
         if type(effect).apply_to_inputs is not Effect.apply_to_inputs:
-            changed = by_values(acting, effect, lambda there: _true_beside(there, point))
+            changed = by_values(acting, effect, lambda there: _mean_true(there, point))
             by_inputs[first:last], by_rates[first:last] = np.moveaxis(changed, 0, 1)
         first = last
     own = parameters.of_inputs
@@ -184,13 +184,14 @@ def _slopes(
 def by_values(
     acting: EffectSet, effect: Effect, of: Callable[[EffectSet], FloatArray]
 ) -> FloatArray:
-    """Derivatives (k, ...) of what an effect set does by the k values of one of its effects, which
-    may be absent, that is neutral; by central differences.
+    """Differentiate a result of an effect set by the k values of one effect: (k, ...).
+
+    Central differences are used. The effect may be absent, which means neutral values.
     """
     active = acting.of(effect)
     slopes = []
     for number, parameter in enumerate(effect.parameters):
-        size = VALUE_PART * parameter.std
+        size = STD_FRACTION_OF_DIFFERENCES * parameter.std
         step = size * np.eye(len(active.values))[number]
         up, down = (
             of(acting.having(ActiveEffect(effect, active.values + sign * step)))

@@ -1,4 +1,4 @@
-"""Parameters by which a tow in motion is differentiated."""
+"""Parameters of the derivatives of a tow in motion."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,21 +13,23 @@ NET = ('drag', 'weight')
 
 @dataclass(frozen=True)
 class MotionParameters:
-    """Parameters of the derivatives of a tow, one kind behind the other; names are those of the
-    groups of a fit's parameter vector.
+    """Parameters of the derivatives of a tow, grouped by kind.
+
+    Names are those of the groups of a fit's parameter vector.
 
     Attributes
     ----------
     coefficients, net
-        True where the twelve coefficients of the boards, and the two factors on drag and weight in
-        water of the net, are among them.
+        True to include the twelve coefficients of the boards, and the two factors on drag and
+        weight in water of the net.
     effects
-        Effects by whose values to differentiate.
+        Effects whose values are parameters.
     inputs
-        Names of additions to what counters and log show; their course in time comes with the
-        inputs (`trawl_ros.solver.motion.course.InputPoint`).
+        Names of errors of counters and log; their course in time comes with the inputs
+        (`trawl_ros.solver.motion.course.InputPoint`).
     motions
-        Number of slow motions that the gear may begin with, `trawl_ros.solver.motion.start`.
+        Number of slow motions in which the gear may begin (`slow_motions` of
+        `trawl_ros.solver.motion.tow`).
     """
 
     coefficients: bool = True
@@ -38,7 +40,7 @@ class MotionParameters:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Names (m) of all parameters in their order."""
+        """Names (m) of all parameters, in order."""
         return (
             *(COEFFICIENTS if self.coefficients else ()),
             *(NET if self.net else ()),

@@ -1,8 +1,8 @@
 """Derivatives of F - M a at the end of a step by parameters, all motion held.
 
-Boards' coefficients by the complex step; drag and weight of the net exactly, since forces and mass
-are linear in both; an effect's values by forward differences of the gear that it makes, against
-the gear as it is, which all of them share.
+Derivatives by the boards' coefficients use the complex step. Those by drag and weight of the net
+are exact, because forces and mass are linear in both. Those by an effect's values are forward
+differences between the changed gear and the gear as it is.
 """
 
 from collections.abc import Iterator
@@ -17,28 +17,31 @@ from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.model.assembly import board_loads, forces, mass
 from trawl_ros.model.bar_pass import add_bar_forces, water_of
-from trawl_ros.model.board import own_load_slopes
-from trawl_ros.model.gear_model import OUTWARD, GearModel
+from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.line import BarProperties
+from trawl_ros.model.observables import observe
 from trawl_ros.model.slopes.along import add_forces_along_tow, board_inertia
 from trawl_ros.model.state import State, Tow, TowSlopes
+from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.likeness import same_mass, same_observables
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.parameters import MotionParameters
+from trawl_ros.solver.sensitivity import coefficient_pushes
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-DIFFERENCE = 1e-5
-"""Forward differences by an effect's value are taken over this part of its std. Of all effects that
-are watched they are within 6e-7 of central ones; over ten times as much that is 1e-5, and over a
-tenth of it rounding takes as much."""
+STD_FRACTION_OF_DIFFERENCES = 1e-5
+"""Step of forward differences by an effect's value, as a fraction of its std. For all effects of
+the catalogue they agree with central differences to 6e-7. With ten times this step it is 1e-5;
+with a tenth of it rounding causes the same error."""
 
 
 @dataclass(frozen=True)
 class StepEnd:
-    """End of a step: state, acceleration (dof,), boundary, and the place ``predicted`` at which the
-    step takes the gear's mass.
+    """End of a step: state, acceleration (dof,) and boundary.
+
+    ``predicted`` is the state at which the step takes the gear's mass.
     """
 
     state: State
@@ -56,22 +59,24 @@ class GearAtPoint:
     point: InputPoint
 
     def model(self, acting: EffectSet) -> GearModel:
-        """Gear model with effects."""
+        """Return the gear model with effects."""
         return acting.gear(self.plain, self.point.situation)
 
     def changed(self, effect: Effect) -> Iterator[tuple[float, GearModel]]:
-        """Changes of each of an effect's values, with the gear models that they make."""
+        """Yield a change of each of an effect's values, with the gear model that it makes."""
         values = self.acting.of(effect).values
         for number, parameter in enumerate(effect.parameters):
-            more, size = values.copy(), DIFFERENCE * parameter.std
+            more, size = values.copy(), STD_FRACTION_OF_DIFFERENCES * parameter.std
             more[number] += size
             yield size, self.model(self.acting.having(ActiveEffect(effect, more)))
 
 
 @dataclass(frozen=True)
 class NetLoads:
-    """Loads of the net that its factors act on: bars with nothing but their drag, and the mass
-    (nodes,) that weighs in water.
+    """Loads of the net that its factors act on.
+
+    ``drag`` are its bars with nothing but their drag; ``heavy`` (nodes,) is the mass that has
+    weight in water, kg.
     """
 
     ends: IntArray
@@ -81,7 +86,7 @@ class NetLoads:
 
 
 def net_loads(model: GearModel) -> NetLoads:
-    """Loads of a gear's net, as `GearModel.with_net` has them."""
+    """Return the loads of a gear's net that `GearModel.with_net` scales."""
     bars = np.flatnonzero(model.net_bars)
     own, nothing = model.bars.chosen(bars), np.zeros(len(bars))
     ends, rest = model.ends[bars], model.rest[bars]
@@ -102,7 +107,7 @@ def pushes(
     net: NetLoads,
     by_effects: FloatArray,
 ) -> FloatArray:
-    """Derivatives (dof, m) of F - M a by all parameters; by those of the boundary, of F alone.
+    """Return derivatives (dof, m) of F - M a by all parameters; by the boundary, of F only.
 
     Parameters
     ----------
@@ -122,7 +127,7 @@ def pushes(
     found = np.zeros((model.dof, len(parameters)))
     add_forces_along_tow(model, end.state, end.tow, boundary, found)
     if parameters.coefficients:
-        found[-12:, parameters.of_coefficients] += _by_coefficients(model, end)
+        found[-12:, parameters.of_coefficients] += coefficient_pushes(model, end.state)
     if parameters.net:
         found[:, parameters.of_net] += _by_net(model, net, end)
     found[:, parameters.of_effects] += by_effects
@@ -131,8 +136,9 @@ def pushes(
 
 @dataclass(frozen=True)
 class EffectPushes:
-    """Derivatives (dof, m) of F - M a by the values of effects, of what they do to the gear; and
-    names of the effects that change what a gear shows which stays where it is.
+    """Derivatives (dof, m) of F - M a by the values of effects.
+
+    ``showing`` names the effects that also change observables of a gear that does not move.
     """
 
     push: FloatArray
@@ -140,7 +146,7 @@ class EffectPushes:
 
 
 def effect_pushes(gear: GearAtPoint, parameters: MotionParameters, end: StepEnd) -> EffectPushes:
-    """Derivatives by the values of effects."""
+    """Return the derivatives by the values of effects."""
     own, still = parameters.of_effects, _GearAtEnd(gear.model(gear.acting), end)
     found, first = np.zeros((gear.plain.dof, own.stop - own.start)), 0
     showing = set()
@@ -154,15 +160,45 @@ def effect_pushes(gear: GearAtPoint, parameters: MotionParameters, end: StepEnd)
     return EffectPushes(found, frozenset(showing))
 
 
+def shown_by_effects(
+    gear: GearAtPoint, parameters: MotionParameters, names: frozenset[str], state: State, tow: Tow
+) -> FloatArray:
+    """Return derivatives (n_observables, m) of observables by values of effects, all motion held.
+
+    A thicker wire, for example, pulls with another force at the same stretch. The motion itself
+    carries every other change by an effect.
+
+    Parameters
+    ----------
+    gear
+        Gear at this instant.
+    parameters
+        Parameters of the derivatives.
+    names
+        Effects that may change observables directly; derivatives by all others are zero.
+    state, tow
+        State of the gear, and its boundary.
+    """
+    own = parameters.of_effects
+    found, first = np.zeros((len(OBSERVABLES), own.stop - own.start)), 0
+    still = observe(gear.model(gear.acting), state, tow).array()
+    for effect in parameters.effects:
+        if effect.name in names:
+            for number, (size, model) in enumerate(gear.changed(effect)):
+                found[:, first + number] = (observe(model, state, tow).array() - still) / size
+        first += len(effect.parameters)
+    return found
+
+
 @dataclass(frozen=True)
 class _GearAtEnd:
-    """Gear with the effects that act, and the end of its step."""
+    """Gear with the effects that act on it, and the end of its step."""
 
     model: GearModel
     end: StepEnd
 
     def change(self, model: GearModel) -> FloatArray:
-        """Change (dof,) of F - M a with another model; boards alone, where they alone differ."""
+        """Return the change (dof,) of F - M a with another model, cheaply if only boards differ."""
         other = _differing(model, self.model)
         if not other:
             return np.zeros(model.dof)
@@ -176,7 +212,7 @@ class _GearAtEnd:
         return changed
 
     def _of_boards(self, change: FloatArray) -> FloatArray:
-        """Change (dof,) of what acts on boards alone, (2, 6)."""
+        """Return a change (2, 6) of the loads on boards as one (dof,) of all loads."""
         whole = np.zeros(self.model.dof)
         whole[-12:] = change.ravel()
         return whole
@@ -195,44 +231,28 @@ class _GearAtEnd:
 
     @cached_property
     def _inertia(self) -> FloatArray:
-        """Mass as data on the pattern, of all gears that are heavy alike."""
+        """Mass as data on the pattern, shared by all gears of equal mass."""
         return mass(self.model, self.end.predicted, self.end.tow)
 
     def _push(self, model: GearModel) -> FloatArray:
-        """F - M a (dof,)."""
-        end, alike = self.end, same_mass(model, self.model)
-        inertia = self._inertia if alike else mass(model, end.predicted, end.tow)
+        """Return F - M a (dof,)."""
+        end, shared = self.end, same_mass(model, self.model)
+        inertia = self._inertia if shared else mass(model, end.predicted, end.tow)
         pull = forces(model, end.state, end.tow)
         left: FloatArray = pull - model.pattern.times(inertia, end.acceleration)
         return left
 
     def _loaded(self, model: GearModel) -> FloatArray:
-        """Boards' own loads (2, 6)."""
+        """Return the boards' own loads (2, 6)."""
         return board_loads(model, self.end.state)
 
     def _resisted(self, model: GearModel) -> FloatArray:
-        """Boards' own inertia times acceleration (2, 6)."""
+        """Return the boards' own inertia times acceleration (2, 6)."""
         return board_inertia(model, self.end.predicted.board_rotations, self.end.acceleration)
 
 
-def _by_coefficients(model: GearModel, end: StepEnd) -> FloatArray:
-    """Derivatives (12, 12) of the boards' own loads by the coefficients."""
-    state = end.state
-    slopes = own_load_slopes(
-        model.board,
-        model.coefficients,
-        OUTWARD,
-        state.board_positions,
-        state.board_rotations,
-        state.board_velocities,
-        state.board_rates,
-        model.water,
-    )
-    return slopes.reshape(12, -1)
-
-
 def _by_net(model: GearModel, net: NetLoads, end: StepEnd) -> FloatArray:
-    """Derivatives (dof, 2) by factors on drag and weight in water of the net."""
+    """Return derivatives (dof, 2) by factors on drag and weight in water of the net."""
     n, state = model.nodes, end.state
     drag = np.zeros((n, 3))
     add_bar_forces(
@@ -253,6 +273,6 @@ def _by_net(model: GearModel, net: NetLoads, end: StepEnd) -> FloatArray:
 
 
 def _differing(one: 'DataclassInstance', other: 'DataclassInstance') -> set[str]:
-    """Names of the fields that two records of one kind do not share."""
+    """Return the names of fields that two records of one kind do not share."""
     names = (part.name for part in fields(one))
     return {name for name in names if getattr(one, name) is not getattr(other, name)}

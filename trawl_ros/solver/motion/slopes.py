@@ -1,9 +1,9 @@
-"""Derivatives of a motion by parameters, and of one time step: the discrete map, differentiated.
+"""Derivatives of a motion by parameters, from one time step to the next.
 
 A step solves F(q, v) = M a for the new acceleration, with q and v linear in it. The derivative of
-its root by any parameter solves the same equation, linearised there: one factorisation, one
-right-hand side for each parameter. Rotations advance by exponentials, whose tangent (the left
-Jacobian of SO(3)) enters the matrix and the history alike.
+its root by a parameter solves the same equation, linearised there: one factorisation serves, with
+one right-hand side for each parameter. Rotations advance by exponentials, whose tangent (the left
+Jacobian of SO(3)) enters the matrix and the history.
 """
 
 from dataclasses import dataclass, replace
@@ -12,6 +12,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray, Slice
 from trawl_ros.model.assembly import LinearisedForces, linearised
+from trawl_ros.model.compiled import fused
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import skew
 from trawl_ros.model.rotations import rotation
@@ -22,8 +23,10 @@ from trawl_ros.model.slopes.along import (
 )
 from trawl_ros.model.state import State, Tow, TowSlopes
 from trawl_ros.solver.linear.factor import Factor, factorised
-from trawl_ros.solver.motion.products import BOARDS, carry_on, subtract_history
 from trawl_ros.solver.stepper import Scheme, SolvedStep
+
+BOARD_ROWS = 12
+"""Degrees of freedom of both boards, the last rows of every array (dof, ...)."""
 
 
 @dataclass(frozen=True)
@@ -41,25 +44,27 @@ class MotionSlopes:
 
     @property
     def arrays(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """All of them in this order."""
+        """Derivatives in this order."""
         return self.places, self.velocities, self.accelerations, self.averaged
 
     def weighted(self, weights: FloatArray, rows: Slice | IntArray) -> FloatArray:
-        """Some rows of a sum of all but the places, by weights (3,)."""
+        """Return rows of a weighted sum of all derivatives but the places, by weights (3,)."""
         parts = self.velocities[rows], self.accelerations[rows], self.averaged[rows]
         found: FloatArray = weights[0] * parts[0] + weights[1] * parts[1] + weights[2] * parts[2]
         return found
 
 
 def unmoved(dof: int, number: int) -> MotionSlopes:
-    """Derivatives of a motion that does not depend on so many parameters."""
+    """Return zero derivatives by a number of parameters."""
     return MotionSlopes(*np.zeros((4, dof, number)))
 
 
 def left_jacobian(vectors: FloatArray) -> FloatArray:
-    """Tangent (..., 3, 3) of the exponential of rotation vectors (..., 3): exp(w + δ) =
-    exp(J δ) exp(w) to first order.
+    """Return the left Jacobian (..., 3, 3) of SO(3) at rotation vectors (..., 3).
+
+    To first order, exp(w + δ) = exp(J δ) exp(w).
     """
+    # J = I + (1 - cos θ)/θ² [w]× + (θ - sin θ)/θ³ [w]×²; series for small θ avoid cancellation.
     square = np.sum(vectors**2, axis=-1)[..., None, None]
     size = np.sqrt(np.maximum(square, 1e-12))
     small = square < 1e-6
@@ -71,18 +76,18 @@ def left_jacobian(vectors: FloatArray) -> FloatArray:
 
 
 def _turned_on(before: FloatArray, change: FloatArray, shift: FloatArray) -> FloatArray:
-    """Changes of the boards' places (12, m) at the end of a way.
+    """Return the changes of the boards' places (12, m) after a displacement.
 
     Parameters
     ----------
     before
         Changes (12, m) at its start.
     change
-        Of the way (12, m): metres, and rotation vectors.
+        Changes of the displacement (12, m): metres, and rotation vectors.
     shift
-        The way itself (dof,).
+        The displacement itself (dof,).
     """
-    vectors = shift[-BOARDS:].reshape(2, 6)[:, 3:]
+    vectors = shift[-BOARD_ROWS:].reshape(2, 6)[:, 3:]
     found: FloatArray = before + change
     old, added = (part.reshape(2, 6, -1)[:, 3:] for part in (before, change))
     found.reshape(2, 6, -1)[:, 3:] = left_jacobian(vectors) @ added + rotation(vectors) @ old
@@ -91,8 +96,10 @@ def _turned_on(before: FloatArray, change: FloatArray, shift: FloatArray) -> Flo
 
 @dataclass(frozen=True)
 class LinearisedStep:
-    """Linearisation of a solved step, with the factors of its matrix; ``predicted`` is the state at
-    which it takes the gear's mass, whose derivatives times acceleration are ``inertia_slopes``.
+    """Linearisation of a solved step, with the factors of its matrix.
+
+    ``predicted`` is the state at which the step takes the gear's mass, and ``inertia_slopes`` are
+    the derivatives of this mass times the acceleration.
     """
 
     solved: SolvedStep
@@ -102,7 +109,7 @@ class LinearisedStep:
     factor: Factor
 
     def at(self, solved: SolvedStep) -> 'LinearisedStep':
-        """The same linearisation for a root nearby."""
+        """Return the same linearisation for a root nearby."""
         return replace(self, solved=solved)
 
 
@@ -117,7 +124,7 @@ def linearise_step(model: GearModel, solved: SolvedStep, tow: Tow) -> Linearised
     step, new, scheme = solved.step, solved.acceleration, solved.step.scheme
     by_velocity, by_position = scheme.by_velocity(step.h), scheme.by_position(step.h)
     here = linearised(model, step.state(new), tow)
-    stiffness = _by_vectors(model, here.stiffness, step.shift(new))
+    stiffness = _by_vectors(model, here.stiffness, step.displacement(new))
     data = stiffness + (by_velocity / by_position) * here.damping + solved.inertia / by_position
     predicted = step.state(step.start.averaged)
     slopes = net_inertia_slopes(model, predicted, tow, new)
@@ -125,11 +132,11 @@ def linearise_step(model: GearModel, solved: SolvedStep, tow: Tow) -> Linearised
 
 
 def _by_vectors(model: GearModel, data: FloatArray, shift: FloatArray) -> FloatArray:
-    """Data of a matrix by the boards' rotation vectors ``shift`` instead of by rotations."""
+    """Change a matrix from derivatives by rotations to those by rotation vectors ``shift``."""
     found, indptr = data.copy(), model.pattern.indptr
     tangents = left_jacobian(shift[-12:].reshape(2, 6)[:, 3:])
     for side, tangent in enumerate(tangents):
-        # The three columns have the same rows: their board's and those of the ropes rigged to it.
+        # These three columns share their rows: those of the board and of the ropes rigged to it.
         first = model.dof - 12 + 6 * side + 3
         columns = found[indptr[first] : indptr[first + 3]].reshape(3, -1)
         columns[:] = tangent.T @ columns
@@ -145,7 +152,7 @@ def advance_slopes(
     boundary: TowSlopes,
     push: FloatArray,
 ) -> MotionSlopes:
-    """Derivatives after a step.
+    """Return the derivatives after a step.
 
     Parameters
     ----------
@@ -158,22 +165,22 @@ def advance_slopes(
     boundary
         Derivatives of the boundary at its end.
     push
-        Derivatives (dof, m) of F - M a at its end by the parameters, all motion held; it serves as
-        space for the right-hand sides.
+        Derivatives (dof, m) of F - M a at its end by the parameters, all motion held; overwritten
+        by the right-hand sides.
     """
     step, new = at.solved.step, at.solved.acceleration
     h, scheme, averaged = step.h, step.scheme, step.start.averaged
     weights = _Weights.of(scheme, h)
-    boards = slice(model.dof - BOARDS, None)
+    boards = slice(model.dof - BOARD_ROWS, None)
     old, way = before.places[boards], before.weighted(weights.way, boards)
     predicted_way = before.weighted(weights.predicted_way, boards)
-    turned = _turned_on(old, predicted_way, step.shift(averaged))
+    turned = _turned_on(old, predicted_way, step.displacement(averaged))
     rows = model.rigging.rows(model.nodes)
     predicted = before.places[rows] + before.weighted(weights.predicted_way, rows)
     moved = RiggingDirections(predicted, turned, boundary)
     subtract_rigging_inertia(model, at.predicted, tow, new, moved, push)
     pattern, here = model.pattern, at.here
-    subtract_history(
+    _subtract_history(
         pattern.indices.view(np.uint32),
         pattern.indptr,
         here.stiffness,
@@ -183,7 +190,7 @@ def advance_slopes(
         weights.predicted_way,
         weights.pace,
         before.arrays,
-        _turned_on(old, way, step.shift(new)),
+        _turned_on(old, way, step.displacement(new)),
         turned,
         push,
     )
@@ -191,27 +198,111 @@ def advance_slopes(
     after = MotionSlopes(*np.empty((4, *shift.shape)))
     share = np.array([1.0, scheme.by_velocity(h), 1.0, scheme.share])
     share[1:] /= scheme.by_position(h)
-    carry_on(weights.way, weights.pace, weights.carried, share, before.arrays, shift, after.arrays)
-    after.places[boards] = _turned_on(old, way + shift[boards], step.shift(new))
+    _carry_on(weights.way, weights.pace, weights.known, share, before.arrays, shift, after.arrays)
+    after.places[boards] = _turned_on(old, way + shift[boards], step.displacement(new))
     return after
 
 
 @dataclass(frozen=True)
 class _Weights:
-    """Weights (3,) of velocities, accelerations and averaged ones before a step in what is known
-    of it: averaged acceleration, way, way to the predicted place, and velocity.
+    """Weights (3,) of velocities, accelerations and averaged accelerations before a step.
+
+    They give the known parts of its averaged acceleration, its displacement, the displacement to
+    the predicted place, and its velocity.
     """
 
-    carried: FloatArray
+    known: FloatArray
     way: FloatArray
     predicted_way: FloatArray
     pace: FloatArray
 
     @classmethod
     def of(cls, scheme: Scheme, h: float) -> '_Weights':
-        """Weights of a step of ``h`` seconds: all of it is linear, so unit vectors tell them."""
+        """Return the weights of a step of ``h`` seconds, by the linear scheme on unit vectors."""
         velocities, accelerations, averaged = np.eye(3)
-        carried = scheme.carried(accelerations, averaged)
-        way = scheme.way(velocities, averaged, carried, h)
-        pace = scheme.pace(velocities, averaged, carried, h)
-        return cls(carried, way, way + scheme.by_position(h) * averaged, pace)
+        known = scheme.known_acceleration(accelerations, averaged)
+        way = scheme.predicted_displacement(velocities, averaged, known, h)
+        pace = scheme.predicted_velocity(velocities, averaged, known, h)
+        return cls(known, way, way + scheme.by_position(h) * averaged, pace)
+
+
+@fused
+def _subtract_history(
+    indices: IntArray,
+    indptr: IntArray,
+    stiffness: FloatArray,
+    damping: FloatArray,
+    slopes: FloatArray,
+    way: FloatArray,
+    predicted_way: FloatArray,
+    pace: FloatArray,
+    before: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    reached_boards: FloatArray,
+    predicted_boards: FloatArray,
+    right: FloatArray,
+) -> None:
+    """Subtract stiffness · reached + damping · pace + slopes · predicted from ``right`` (dof, m).
+
+    The matrices are data on one pattern, whose columns come in threes of equal rows. ``way``,
+    ``predicted_way`` and ``pace`` are weights (3,) of the velocities, accelerations and averaged
+    accelerations among the derivatives ``before`` the step, whose places come first.
+    """
+    # All parameters at once: derivatives (dof, m) exceed the cache, so each is read once a step.
+    number = right.shape[1]
+    x, v, p = np.empty((3, number)), np.empty((3, number)), np.empty((3, number))
+    tail = len(right) - BOARD_ROWS
+    for column in range(0, len(right), 3):
+        for i in range(3):
+            place, speed = before[0][column + i], before[1][column + i]
+            old, mean = before[2][column + i], before[3][column + i]
+            for m in range(number):
+                x[i, m] = place[m] + way[0] * speed[m] + way[1] * old[m] + way[2] * mean[m]
+                p[i, m] = x[i, m] + (predicted_way[2] - way[2]) * mean[m]
+                v[i, m] = pace[0] * speed[m] + pace[1] * old[m] + pace[2] * mean[m]
+            # Boards rotate, so the caller has worked out the changes of their places.
+            if column >= tail:
+                x[i], p[i] = (
+                    reached_boards[column - tail + i],
+                    predicted_boards[column - tail + i],
+                )
+        first, second, third = indptr[column], indptr[column + 1], indptr[column + 2]
+        for entry in range(second - first):
+            i, j, k = first + entry, second + entry, third + entry
+            row = right[indices[i]]
+            a0, a1, a2 = stiffness[i], stiffness[j], stiffness[k]
+            b0, b1, b2 = damping[i], damping[j], damping[k]
+            c0, c1, c2 = slopes[i], slopes[j], slopes[k]
+            for m in range(number):
+                row[m] -= (
+                    (a0 * x[0, m] + a1 * x[1, m] + a2 * x[2, m])
+                    + (b0 * v[0, m] + b1 * v[1, m] + b2 * v[2, m])
+                    + (c0 * p[0, m] + c1 * p[1, m] + c2 * p[2, m])
+                )
+
+
+@fused
+def _carry_on(
+    way: FloatArray,
+    pace: FloatArray,
+    known: FloatArray,
+    by_shift: FloatArray,
+    before: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    shift: FloatArray,
+    after: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+) -> None:
+    """Fill in the derivatives after a step from those before it and from the solution ``shift``.
+
+    ``by_shift`` (4,) is its share in places, velocities, accelerations and averaged accelerations.
+    ``known`` are weights (3,), as those of `_subtract_history`.
+    """
+    for row in range(len(shift)):
+        place, speed, old, mean = before[0][row], before[1][row], before[2][row], before[3][row]
+        new = shift[row]
+        for m in range(len(new)):
+            s, a, b = speed[m], old[m], mean[m]
+            after[0][row, m] = (
+                place[m] + way[0] * s + way[1] * a + way[2] * b + by_shift[0] * new[m]
+            )
+            after[1][row, m] = pace[0] * s + pace[1] * a + pace[2] * b + by_shift[1] * new[m]
+            after[2][row, m] = by_shift[2] * new[m]
+            after[3][row, m] = known[1] * a + known[2] * b + by_shift[3] * new[m]

@@ -8,11 +8,15 @@ from collections.abc import Callable
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.effects.effect_set import NO_EFFECTS, EffectSet
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.slopes.observed import observed_slopes
+from trawl_ros.model.state import State, Tow, TowSlopes
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
+from trawl_ros.solver.linear.factor import solve_refined
+from trawl_ros.solver.modes import linearised_motion
 from trawl_ros.solver.motion.course import CoursePoint, InputPoint, course_point
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.partials import (
@@ -22,22 +26,29 @@ from trawl_ros.solver.motion.partials import (
     effect_pushes,
     net_loads,
     pushes,
+    shown_by_effects,
 )
 from trawl_ros.solver.motion.readings import MotionPrediction
-from trawl_ros.solver.motion.shown import shown_by_effects
 from trawl_ros.solver.motion.slopes import (
     MotionSlopes,
     advance_slopes,
     unmoved,
 )
-from trawl_ros.solver.motion.start import starting_slopes
-from trawl_ros.solver.motion.stepper import DifferentiatedStepper
+from trawl_ros.solver.motion.stepper import (
+    STEP_OPTIONS,
+    DifferentiatedStepper,
+    LinearisedStepOptions,
+)
 from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.rest_linearisation import rest_linearisation
 from trawl_ros.solver.stepper import StepFailed, at_rest
 
-HALVINGS = 6
-"""Number of halvings of a step that fails. A simulation goes on where more are needed, behind a
-fall of milliseconds; derivatives through that are of no use, and who fits leaves it out."""
+MAX_STEP_HALVINGS = 6
+"""Number of halvings of a step that fails. A simulation takes more, through a fall that lasts
+milliseconds; derivatives through such a fall are of no use, and a fit leaves it out."""
+
+EXTRA_MODES = 6
+"""Modes sought beyond those asked for: oscillations come in pairs, and some may be missed."""
 
 HalvedSteps = set[tuple[float, float]]
 """Steps that were halved: when each begins and how long it is, s."""
@@ -51,21 +62,23 @@ class DifferentiatedTow:
     model
         The gear without effects.
     parameters
-        Parameters of the derivatives; with none of them it is towed alone.
+        Parameters of the derivatives; without any, only the motion is computed.
     inputs
         Inputs at a time (s since the tow began); it begins in the equilibrium of the first.
     acting
-        Effects that are there.
+        Effects that act on the gear.
     start
-        Equilibrium nearby from which that is sought.
+        Equilibrium nearby, from which the search for the first one starts.
     halved
-        Steps that are halved at once; those that fail are added. Tows of one gear at several places
-        that share them differ by their places, and not by which of their steps fail.
+        Steps that are halved at once; those that fail are added. Tows that share this set take the
+        same steps, so they differ only by their parameters.
+    options
+        Options of the time steps.
 
     Attributes
     ----------
     time, steps
-        Time reached, s, and steps that led there.
+        Time reached, s, and number of steps taken.
     model
         The gear there, with its effects.
     motion, slopes
@@ -73,7 +86,7 @@ class DifferentiatedTow:
     course
         Towing boundary and its derivatives.
     first
-        Equilibrium that it began in.
+        Equilibrium in which the tow began.
 
     Raises
     ------
@@ -89,6 +102,7 @@ class DifferentiatedTow:
         acting: EffectSet = NO_EFFECTS,
         start: Equilibrium | None = None,
         halved: HalvedSteps | None = None,
+        options: LinearisedStepOptions = STEP_OPTIONS,
     ) -> None:
         self._halved: HalvedSteps = set() if halved is None else halved
         self._plain, self._acting, self._inputs = model, acting, inputs
@@ -110,10 +124,10 @@ class DifferentiatedTow:
         if parameters:
             end = StepEnd(state, self.motion.acceleration, tow, state)
             push = self._pushes(self.model, point, end, self.course)
-            self.slopes = starting_slopes(
+            self.slopes = _starting_slopes(
                 self.model, state, tow, parameters, self.course.slopes, push
             )
-        self._stepper = DifferentiatedStepper(self.model)
+        self._stepper = DifferentiatedStepper(self.model, options)
 
     def advance(self, h: float) -> None:
         """Advance by ``h`` seconds, in shorter steps where one fails.
@@ -121,26 +135,26 @@ class DifferentiatedTow:
         Raises
         ------
         StepFailed
-            If not even short steps converge; the tow stays where it had come to.
+            If not even short steps converge; the tow stays at the last converged step.
         """
-        self._advance(h, HALVINGS)
+        self._advance(h, MAX_STEP_HALVINGS)
 
     @property
     def is_held(self) -> bool:
-        """True where the derivatives stay as they are."""
+        """True while the derivatives are held constant."""
         return self._held_at is not None
 
     @property
     def derivatives(self) -> tuple[MotionSlopes, FloatArray]:
-        """Derivatives of the motion, and of the places (m, 2, 3) of the blocks it goes with."""
+        """Derivatives of the motion, and of the positions (m, 2, 3) of its blocks."""
         return self.slopes, self.course.slopes.blocks
 
     def hold(self, slopes: MotionSlopes, blocks: FloatArray) -> None:
-        """Hold the derivatives as they were before boards fell: none holds through that."""
+        """Hold the derivatives as they were before boards fell: they are not valid in a fall."""
         self.slopes, self._held_at = slopes, blocks.copy()
 
     def release(self) -> None:
-        """Go on with the derivatives; the gear has gone with its blocks meanwhile."""
+        """Resume the derivatives; the gear has moved along with its blocks meanwhile."""
         assert self._held_at is not None
         along = (self.course.slopes.blocks - self._held_at).mean(axis=1).T
         places, nodes = self.slopes.places, 3 * self.model.nodes
@@ -150,7 +164,7 @@ class DifferentiatedTow:
 
     @property
     def factorisations(self) -> int:
-        """Matrices that were factorised so far, for steps that failed among them."""
+        """Number of factorisations so far, including those of failed steps."""
         return self._stepper.factorisations
 
     def _advance(self, h: float, left: int) -> None:
@@ -204,7 +218,7 @@ class DifferentiatedTow:
         return pushes(model, own, end, course.slopes, self._net[1], by_effects.push)
 
     def forget(self, columns: Slice) -> None:
-        """Set derivatives by some parameters to nought, as if these began to act now."""
+        """Set the derivatives by some parameters to zero, as if these began to act now."""
         for slopes in self.slopes.arrays:
             slopes[:, columns] = 0.0
         if self._held_at is not None:
@@ -221,7 +235,7 @@ class DifferentiatedTow:
             slopes[columns] = 0.0
 
     def observed(self) -> MotionPrediction:
-        """Observables of the present instant with their derivatives."""
+        """Return the observables of the present instant with their derivatives."""
         at = self.model, self.motion.state, self.course.tow
         along = self.slopes.places, self.slopes.velocities, self.course.slopes
         values, slopes = observed_slopes(*at, *along)
@@ -229,3 +243,77 @@ class DifferentiatedTow:
             gear, own = GearAtPoint(self._plain, self._acting, self._point), self.parameters
             slopes[:, own.of_effects] += shown_by_effects(gear, own, self._showing, *at[1:])
         return MotionPrediction(values, slopes)
+
+
+def _starting_slopes(
+    model: GearModel,
+    state: State,
+    tow: Tow,
+    parameters: MotionParameters,
+    boundary: TowSlopes,
+    push: FloatArray,
+) -> MotionSlopes:
+    """Return the derivatives of the equilibrium that a tow begins in.
+
+    Parameters
+    ----------
+    model, state, tow
+        The equilibrium.
+    parameters
+        Of the derivatives.
+    boundary
+        Derivatives of the boundary there. The whole gear goes with the blocks.
+    push
+        Derivatives (dof, m) of the forces, by the boundary too, all motion held.
+
+    Raises
+    ------
+    NoSteadyState
+        If the gear has fewer slow motions than are asked for.
+    """
+    known = rest_linearisation(model, state, tow)
+    n, number = model.nodes, len(parameters)
+    along = boundary.block_velocities.mean(axis=1).T
+    velocities = np.zeros((model.dof, number))
+    velocities[: 3 * n] = np.tile(along, (n, 1))
+    velocities[3 * n :].reshape(2, 6, number)[:, :3] = along
+    pattern, motion = model.pattern, known.motion
+    right = push - pattern.matrix(motion.damping) @ velocities
+    slopes = MotionSlopes(
+        solve_refined(known.factor, right), velocities, *np.zeros((2, model.dof, number))
+    )
+    if parameters.motions:
+        rates, shapes = slow_motions(model, state, tow, parameters.motions)
+        own = parameters.of_motions
+        slopes.places[:, own] = shapes
+        slopes.velocities[:, own] = shapes * rates
+        slopes.accelerations[:, own] = slopes.averaged[:, own] = shapes * rates**2
+    return slopes
+
+
+def slow_motions(
+    model: GearModel, state: State, tow: Tow, number: int
+) -> tuple[FloatArray, FloatArray]:
+    """Find the slowest motions that decay without oscillation: rates (k,), 1/s, shapes (dof, k).
+
+    The largest displacement of a node in a shape is 1 m.
+
+    Raises
+    ------
+    NoSteadyState
+        If there are fewer of them.
+    """
+    wanted = number + EXTRA_MODES
+    motion = linearised_motion(model, state, tow)
+    rates, vectors = motion.nearest(0.0, wanted, tolerance=1e-8)
+    still = np.abs(rates.imag) <= 1e-6 * np.abs(rates)
+    quiet = np.flatnonzero(still & (rates.real < 0.0))
+    if len(quiet) < number:
+        raise NoSteadyState(
+            f'found {len(quiet)} slow motions of the gear that decay, expected {number}'
+        )
+    chosen = quiet[np.argsort(-rates.real[quiet])[:number]]
+    shapes = vectors[:, chosen].real
+    sizes = np.abs(shapes[: 3 * model.nodes]).max(axis=0)
+    signs = np.sign(shapes[np.abs(shapes[: 3 * model.nodes]).argmax(axis=0), range(number)])
+    return rates.real[chosen], shapes * signs / sizes

@@ -1,7 +1,7 @@
-"""Boards for trials: coefficients drawn from the gear's prior, and rigged as a ship would.
+"""Random boards: coefficients drawn from the gear's prior, and rigged as a crew would.
 
-Fastening points of one board hold hardly any other: moments that are drawn turn it over. A ship
-moves the shackles until her boards work, so a drawn board is rigged before it is judged.
+The fastening points of one board rarely suit another: drawn moments turn it over. A crew moves the
+shackles until the boards work, so a drawn board is rigged before it is tried.
 """
 
 from collections import Counter
@@ -21,14 +21,18 @@ from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.equilibrium import Equilibrium, steady_state
 from trawl_ros.solver.trim import roll_for
 from trawl_ros.solver.trimming.held_gear import HeldGear, attitude_at
-from trawl_ros.solver.trimming.over_range import UNKNOWN, hole_limits, trim_held
+from trawl_ros.solver.trimming.over_range import (
+    CENTRE_SHIFTS_PER_CHORD,
+    hole_limits,
+    trim_held,
+)
 from trawl_ros.solver.trimming.released import ReleasedTrim, released_points
 
 Place = tuple[float, float]
 """Warp length (m) and speed (m/s) of a steady state."""
 
-STIFFNESS = UNKNOWN[:1]
-"""Shifts of the centre of pressure against which the first rigging is stiff: one is quick."""
+FIRST_CENTRE_SHIFTS = CENTRE_SHIFTS_PER_CHORD[:1]
+"""Shifts of the centre of pressure for the first rigging, in chords; a single one is fast."""
 
 
 @dataclass(frozen=True)
@@ -38,15 +42,15 @@ class BoardDraw:
     Attributes
     ----------
     attack, inclination
-        Angles for which a board is rigged, rad; it is rigged without pitch.
+        Angles for which a board is rigged, rad, without pitch.
     around
         Meshes around the mouth of the net with which it is rigged.
     std_factor
-        Part of the prior's std with which coefficients are drawn.
+        Factor on the prior's std with which coefficients are drawn.
     most_draws
-        Boards drawn at most.
+        Largest number of boards drawn.
     evaluations
-        Of the released board, in which its angles are fitted, at most.
+        Largest number of evaluations of the released board, in which its angles are fitted.
     """
 
     attack: float = float(np.radians(20.0))
@@ -59,7 +63,7 @@ class BoardDraw:
 
 @dataclass(frozen=True)
 class DrawnBoard:
-    """Board that was drawn and rigged.
+    """Drawn and rigged board.
 
     Attributes
     ----------
@@ -70,7 +74,7 @@ class DrawnBoard:
     steady
         Its usable steady state at each place.
     rejected
-        Boards drawn before that cannot be towed at all places, by reason.
+        Number of boards drawn before that cannot be towed at all places, by reason.
     """
 
     gear: GearRecord
@@ -85,7 +89,7 @@ class DrawnBoard:
 
     @property
     def draws(self) -> int:
-        """Number of boards drawn, this one among them."""
+        """Number of boards drawn, including this one."""
         return 1 + self.rejected.total()
 
 
@@ -97,7 +101,7 @@ def draw_board(
     *,
     build: Callable[[GearRecord], GearModel] = build_model,
 ) -> DrawnBoard:
-    """Draw boards, and rig each, until one can be towed at all places.
+    """Draw and rig boards until one can be towed at all places.
 
     Parameters
     ----------
@@ -105,13 +109,13 @@ def draw_board(
         The gear that is towed. Its prior is normal, cut at the bounds.
     places
         Warp length (m) and speed (m/s) of each state in which the gear must be usable: stable,
-        under water, and its boards within the range of their law.
+        under water, and with boards within the range of their law.
     rng
         Generator of random numbers.
     options
-        Angles, and how boards are drawn.
+        Options of the draw.
     build
-        Makes the model of a gear.
+        Function that builds the model of a gear.
 
     Raises
     ------
@@ -149,20 +153,19 @@ def draw_board(
         return DrawnBoard(own, model, steady, rejected)
     reasons = ', '.join(f'{reason} {count}' for reason, count in rejected.most_common())
     raise TrawlError(
-        f'{gear.name}: none of {options.most_draws} boards drawn from identification can be towed '
-        f'at all of {len(places)} places ({reasons}); expected one: ask for fewer places, or for '
-        'a smaller std'
+        f'{gear.name}: none of {options.most_draws} boards drawn from its `identification` can be '
+        f'towed at all {len(places)} places ({reasons}); expected fewer places or a smaller std'
     )
 
 
 def fastened_as(gear: GearRecord, other: GearRecord) -> GearRecord:
-    """The gear with its boards fastened as those of another one, as is known aboard."""
+    """Return the gear with the fastening points of another one."""
     board = gear.board.model_copy(update={'fastening': other.board.fastening})
     return gear.model_copy(update={'board': board})
 
 
 def with_fastening(gear: GearRecord, points: FloatArray) -> GearRecord:
-    """The gear with other fastening points (3, 3) of warp, upper and lower bridle, m."""
+    """Return the gear with other fastening points (3, 3) of warp, upper and lower bridle, m."""
     names = 'warp_m', 'upper_bridle_m', 'lower_bridle_m'
     holes = {name: tuple(point) for name, point in zip(names, points.tolist(), strict=True)}
     fastening = FasteningRecord.model_validate(holes)
@@ -171,14 +174,14 @@ def with_fastening(gear: GearRecord, points: FloatArray) -> GearRecord:
 
 
 def with_coefficients(gear: GearRecord, values: FloatArray) -> GearRecord:
-    """The gear with other coefficients (12,) of its boards, in the order of eq. 36."""
+    """Return the gear with other coefficients (12,) of its boards, in the order of eq. 36."""
     record = CoefficientsRecord(**dict(zip(COEFFICIENTS, map(float, values), strict=True)))
     board = gear.board.model_copy(update={'coefficients': record})
     return gear.model_copy(update={'board': board})
 
 
 def _drawn(gear: GearRecord, rng: np.random.Generator, factor: float) -> FloatArray:
-    """Coefficients (12,) from the prior, cut at its bounds."""
+    """Draw coefficients (12,) from the prior, truncated at its bounds."""
     known = gear.identification
     start, low, high = (np.array(part) for part in (known.start, known.low, known.high))
     std = factor * np.array(known.std)
@@ -189,8 +192,7 @@ def _drawn(gear: GearRecord, rng: np.random.Generator, factor: float) -> FloatAr
 
 
 def _rigged(model: GearModel, places: Sequence[Place], options: BoardDraw) -> FloatArray | None:
-    """Fastening points (3, 3) for the ends of the range of warps and speeds; None where no rigging
-    holds the board at any of them.
+    """Find fastening points (3, 3) for the ends of the range; None if no rigging holds the board.
 
     Raises
     ------
@@ -199,7 +201,7 @@ def _rigged(model: GearModel, places: Sequence[Place], options: BoardDraw) -> Fl
     """
     ends = _ends(places)
     attitude = attitude_at(model, ends[0], options.attack, options.inclination, 0.0)
-    held = trim_held(HeldGear(model, attitude, ends), model.board.points, STIFFNESS)
+    held = trim_held(HeldGear(model, attitude, ends), model.board.points, FIRST_CENTRE_SHIFTS)
     if not held.usable:
         return None
     wanted = options.attack, roll_for(options.inclination, 0.0), 0.0
@@ -209,15 +211,15 @@ def _rigged(model: GearModel, places: Sequence[Place], options: BoardDraw) -> Fl
 
 
 def _ends(places: Sequence[Place]) -> list[Place]:
-    """Ends of the range of warps and speeds."""
+    """Return the ends of the range of warps and speeds."""
     warps, speeds = (sorted({min(part), max(part)}) for part in zip(*places, strict=True))
     return list(product(warps, speeds))
 
 
 def _steady_states(model: GearModel, places: Sequence[Place]) -> dict[Place, Equilibrium]:
-    """Usable steady states at all places."""
+    """Find usable steady states at all places."""
     found: dict[Place, Equilibrium] = {}
-    # The slowest first: there most boards fall over, with long warps and with short ones.
+    # The slowest first, because most boards that fall over do so there.
     for place in sorted(set(places), key=lambda place: (place[1], -place[0])):
         found[place] = steady_state(model, *place, start=_nearest(found, place)).equilibrium
     return found

@@ -1,9 +1,9 @@
-"""Boards held at an attitude: the ropes' pulls on them, and how pulls and own loads give way.
+"""Boards held at an attitude: the pulls of ropes on them, and their stiffness.
 
-With both boards held at mirrored attitudes and everything else at rest, the moment left on a board
-is a function of its fastening points alone, once the gear behind the ropes is condensed to
-matrices between moves of these points and pulls on them: one for boards that move alike, as mirror
-images, and one for boards that move against each other.
+Both boards are held at mirrored attitudes, and the rest of the gear is in equilibrium. Static
+condensation turns the gear behind the ropes into stiffness matrices between moves of fastening
+points and pulls on them. There are two: for boards that move as mirror images, and for boards that
+move against each other. The moment left on a board is then a function of its points alone.
 """
 
 from dataclasses import dataclass
@@ -19,33 +19,30 @@ from trawl_ros.model.numerics import STEP, outer, skew, stepped
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.linear.factor import factorised_part
 
-MIRROR = np.array([-1.0, 1.0, -1.0])
-"""Signs of the starboard board's turn when the port board turns by a vector, in mirrored axes."""
-
 ACROSS = np.array([1.0, -1.0, 1.0])
-"""Signs of a starboard point's move when its mirror image moves by a vector."""
+"""Signs of a starboard point's move if its mirror image moves by a vector."""
 
 WAYS = 1.0, -1.0
-"""Signs of the starboard board's moves: as the mirror image of port's, and against it."""
+"""Signs of the starboard board's moves: as the mirror image of port's, or against it."""
 
 
 @dataclass(frozen=True)
 class HeldBoard:
-    """The port board, held; the starboard one is its mirror image.
+    """Held port board; the starboard one is its mirror image.
 
     Attributes
     ----------
     arms : (3, 3) array
-        From its centre of gravity to the fastening points for which the rest holds, fixed axes, m.
+        Arms from its centre of gravity to the fastening points of this state, fixed axes, m.
     pulls : (3, 3) array
-        Of the ropes at these points, N.
+        Pulls of the ropes at these points, N.
     give : (2, 3, 3, 3, 3) array
-        Change of pull ``i`` by a move of point ``j``, both in axes, N/m, by `WAYS`; the net
-        follows.
+        Change of pull ``i`` by a move of point ``j``, both in axes, N/m, by `WAYS`, while the net
+        stays in equilibrium.
     load : (6,) array
-        Force (N) and moment (N m) that do not come from ropes.
+        Force (N) and moment (N m) of water and weight.
     by_turn : (6, 3) array
-        Their change by a turn of the board, per rad.
+        Change of the load by a rotation of the board, per rad.
     """
 
     arms: FloatArray
@@ -55,19 +52,21 @@ class HeldBoard:
     by_turn: FloatArray
 
     def balance(self, arms: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Moment (3,) left with other fastening points, and its stiffness (2, 3, 3) against turns
-        of both boards by `WAYS`: a turn θ changes it by ``-stiffness @ θ``. The board's place
-        follows in both.
+        """Return the moment (3,) left with other fastening points and its stiffness (2, 3, 3).
+
+        The stiffness is against rotations of both boards by `WAYS`: a rotation θ changes the
+        moment by ``-stiffness @ θ``. The board's position keeps its forces balanced.
         """
         moves = arms - self.arms
         inward = self.give[0].sum(axis=0)
-        # The board goes where the forces on it balance again.
+        # The board moves to where its forces balance again.
         shift = -np.linalg.solve(inward.sum(axis=1), np.einsum('ajb,jb->a', inward, moves))
         pulls = self.pulls + np.einsum('iajb,jb->ia', self.give[0], moves + shift)
         moment = np.cross(arms, pulls).sum(axis=0) + self.load[3:]
         return moment, np.stack([self._stiffness(give, arms, pulls) for give in self.give])
 
     def _stiffness(self, give: FloatArray, arms: FloatArray, pulls: FloatArray) -> FloatArray:
+        # A rotation θ moves an arm r by θ × r; the position follows, then moments are taken.
         inward, lever = give.sum(axis=0), -skew(arms)
         turned = np.einsum('ajb,jbc->ac', inward, lever) + self.by_turn[:3]
         shifts = -np.linalg.solve(inward.sum(axis=1), turned)
@@ -79,16 +78,14 @@ class HeldBoard:
 
 @dataclass(frozen=True)
 class _Rigging:
-    """Ropes' first bars at the boards: forces on their ends as a function of the ends' moves."""
+    """First bars of the ropes at the boards: forces on their ends by moves of the ends."""
 
     model: GearModel
     state: State
     tow: Tow
 
     def forces(self, points: FloatArray, nodes: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Forces (2, 3, 3) on fastening points and (n, 3) on nodes after moves of the same
-        shapes.
-        """
+        """Return forces (2, 3, 3) on points and (n, 3) on nodes after moves of these shapes."""
         model, state = self.model, self.state
         rigged, here = model.pattern.rigged, points_of(model, state, self.tow)
         n, ends = model.nodes, model.ends[rigged].ravel()
@@ -108,14 +105,14 @@ class _Rigging:
 
 
 def rope_pulls(model: GearModel, state: State, tow: Tow) -> FloatArray:
-    """Pulls (2, 3, 3) of warps, upper and lower ropes at the boards' fastening points, N."""
+    """Return pulls (2, 3, 3) of warps, upper and lower ropes at the boards' points, N."""
     still = np.zeros((2, 3, 3)), np.zeros((model.nodes, 3))
     pulls: FloatArray = _Rigging(model, state, tow).forces(*still)[0].real
     return pulls
 
 
 def held_board(model: GearModel, state: State, tow: Tow) -> HeldBoard:
-    """Condense the gear around the port board of a state that is at rest but for its attitudes."""
+    """Condense the gear to the port board, at a shape with held attitudes."""
     n, rigging = model.nodes, _Rigging(model, state, tow)
     still_points, still_nodes = np.zeros((2, 3, 3)), np.zeros((n, 3))
     moves = []

@@ -1,6 +1,4 @@
-"""The gear with boards held at one attitude, at several operating points: its shapes, and what they
-ask of fastening points.
-"""
+"""Gear with boards held at one attitude: its shapes at several operating points."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,25 +13,30 @@ from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
 from trawl_ros.solver.cold_start import bowed
 from trawl_ros.solver.equilibrium import with_effects
-from trawl_ros.solver.first_guess import coarser_model, first_guess, shifted_to
+from trawl_ros.solver.first_guess import (
+    attitudes,
+    coarser_model,
+    first_guess,
+    shifted_to,
+)
 from trawl_ros.solver.operating_point import steady_tow
 from trawl_ros.solver.relax import relax, without_attitude
-from trawl_ros.solver.trim import attitudes, roll_for
+from trawl_ros.solver.trim import roll_for
 from trawl_ros.solver.trimming.held_boards import HeldBoard, held_board
 
-SHAPED, SHAPED_LIMIT = 1.0, 300
-"""Force left (N) at which a shape is found, and iterations after which it is given up."""
+SHAPE_FORCE_N, SHAPE_ITERATIONS = 1.0, 300
+"""Force left at which a shape is converged, and iterations after which it is given up."""
 
-BOWED = 0.0, 300.0, 1000.0, 600.0, 2000.0
-"""Loads across twine (Pa) under which shapes with held boards are sought, one after another: twine
-that bows finds a shape more easily, and pulls on the bridles nearly as it will."""
+BOW_PRESSURES_PA = 0.0, 300.0, 1000.0, 600.0, 2000.0
+"""Loads across twine, tried in this order: with bowed twine a shape is found more easily, and its
+pull on the bridles is nearly the same."""
 
-FIRST_STEPS = 2.0, 0.5
-"""First time steps (s) of the search for a shape, one after another."""
+FIRST_TIME_STEPS_S = 2.0, 0.5
+"""First time steps of the search for a shape, tried in this order."""
 
 
 def coarsest_model(model: GearModel) -> GearModel:
-    """The same gear with the coarsest net in which a shape is looked for."""
+    """Return the gear with the coarsest net of a cold start."""
     while (coarser := coarser_model(model)) is not None:
         model = coarser
     return model
@@ -42,7 +45,7 @@ def coarsest_model(model: GearModel) -> GearModel:
 def attitude_at(
     model: GearModel, place: tuple[float, float], attack: float, inclination: float, pitch: float
 ) -> FloatArray:
-    """Rotations (2, 3, 3) with these angles; in a steady tow attack depends on nothing else."""
+    """Return the rotations (2, 3, 3) with these angles in a steady tow."""
     roll = roll_for(inclination, pitch)
     acting, point = with_effects(model, (place[0], place[0]), place[1])
     tow = steady_tow(acting, point)
@@ -56,7 +59,7 @@ def attitude_at(
 
 
 class HeldGear:
-    """The gear with boards held at one attitude at all operating points."""
+    """Gear with boards held at one attitude at all operating points."""
 
     def __init__(
         self, model: GearModel, rotations: FloatArray, places: Sequence[tuple[float, float]]
@@ -77,12 +80,13 @@ class HeldGear:
     def _first(
         self, model: GearModel, tow: Tow, guess: State, place: tuple[float, float]
     ) -> tuple[GearModel, State]:
-        """Gear whose twine bows under the first load with which a shape is found, and the shape;
-        from a first guess, or from the other operating points.
+        """Find a shape with the least bowed twine, from a guess or another operating point.
+
+        Returns the gear with this twine, and the shape.
         """
         refused: NoSteadyState | None = None
         known = sorted(range(len(self.states)), key=lambda n: self._apart(place, self.places[n]))
-        for pressure in BOWED:
+        for pressure in BOW_PRESSURES_PA:
             loose = bowed(model, pressure)
             near = [
                 shifted_to(self.acting[n][0], self.states[n], self.acting[n][1], tow)
@@ -100,30 +104,30 @@ class HeldGear:
 
     @staticmethod
     def _apart(a: tuple[float, float], b: tuple[float, float]) -> float:
-        """Distance of two operating points, in logarithms."""
+        """Return the distance of two operating points, in logarithms."""
         return float(np.abs(np.log(a) - np.log(b)).sum())
 
     def regeared(self, model: GearModel) -> None:
-        """Go on with a changed gear of the same nodes; shapes are those of before."""
+        """Replace the gear by a changed one with the same nodes; keep the shapes."""
         self.model = model
         for number, (warp, speed) in enumerate(self.places):
             acting, _ = with_effects(model, (warp, warp), speed)
             self.acting[number] = (bowed(acting, self._loads[number]), self.acting[number][1])
 
     def turned(self, rotations: FloatArray, points: FloatArray) -> None:
-        """Hold the boards at other rotations (2, 3, 3)."""
+        """Hold the boards at other rotations (2, 3, 3) and find the shapes."""
         turned = [replace(state, board_rotations=rotations) for state in self.states]
         self.states, self.turn = self.shapes(points, turned), rotations[0]
 
     def shapes(self, points: FloatArray, near: Sequence[State]) -> list[State]:
-        """Shapes with these points (3, 3), from others nearby."""
+        """Find the shapes with these points (3, 3), from others nearby."""
         return [
             _shape(acting.with_board(points=points), state, tow, place)
             for (acting, tow), state, place in zip(self.acting, near, self.places, strict=True)
         ]
 
     def boards(self, points: FloatArray) -> list[HeldBoard]:
-        """The port board at each operating point, with the shape found anew."""
+        """Find the shapes with these points, and return the port board at each operating point."""
         self.states = self.shapes(points, self.states)
         return [
             held_board(acting.with_board(points=points), state, tow)
@@ -131,21 +135,27 @@ class HeldGear:
         ]
 
     def arms(self, points: FloatArray) -> FloatArray:
-        """Arms (3, 3) in fixed axes of points in the outward frame."""
+        """Return arms (3, 3) in fixed axes of points in the outward frame."""
         arms: FloatArray = points @ self.model.board.installed @ self.turn.T
         return arms
 
 
 def _shape(model: GearModel, state: State, tow: Tow, place: tuple[float, float]) -> State:
-    """Shape of the gear with its boards held as they are."""
+    """Find the shape of the gear with its boards held at their attitudes."""
     free, left = without_attitude(model), np.inf
-    for first in FIRST_STEPS:
+    for first in FIRST_TIME_STEPS_S:
         found, _, left = relax(
-            model, state, tow, tolerance=SHAPED, time_step=first, free=free, limit=SHAPED_LIMIT
+            model,
+            state,
+            tow,
+            tolerance=SHAPE_FORCE_N,
+            time_step=first,
+            free=free,
+            limit=SHAPE_ITERATIONS,
         )
-        if left <= SHAPED:
+        if left <= SHAPE_FORCE_N:
             return found
     raise NoSteadyState(
-        f'warp {place[0]:g} m at {place[1]:.4g} m/s: with the boards held at the wanted angles '
-        f'the gear finds no shape, {left:.3g} N left'
+        f'warp {place[0]:g} m at {place[1]:.4g} m/s: the gear has no shape with the boards held '
+        f'at the wanted angles, {left:.3g} N left'
     )

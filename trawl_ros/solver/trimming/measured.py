@@ -1,8 +1,7 @@
-"""Angles of boards from what was measured at one operating point: their spread and depth.
+"""Angles of boards from the measured spread and depth at one operating point.
 
-A board that is held at an attitude is where its lift, drag and weight and the ropes balance. Attack
-decides on its spread, lean on its depth; so two readings give two angles, without a fastening
-point.
+The position of a held board balances lift, drag, weight and ropes. Attack determines its spread
+and inclination its depth, so two readings give two angles, without the fastening points.
 """
 
 from dataclasses import dataclass
@@ -17,24 +16,24 @@ from trawl_ros.model.observables import observe
 from trawl_ros.records.observables import Observables
 from trawl_ros.solver.trimming.held_gear import HeldGear, attitude_at, coarsest_model
 
-LEANS = np.radians([-35.0, 50.0])
-"""Inclinations among which is sought, inward and outward."""
+INCLINATION_RANGE = np.radians([-35.0, 50.0])
+"""Range of the inclinations sought, inward and outward, rad."""
 
 STARTS = (0.7, 0.5), (0.4, 0.75), (0.7, 0.2)
-"""Starts of the searches, as shares of the ranges of attack and inclination."""
+"""Starts of the searches, as fractions of the ranges of attack and inclination."""
 
-MET = 0.01
-"""Part of a wish by which it may be missed and still counts as met."""
+MAX_RELATIVE_MISS = 0.01
+"""Largest relative difference from a wanted value that counts as met."""
 
-STEP = np.radians(0.3)
-"""Change of an angle for differences; shapes are found to less than that."""
+ANGLE_STEP = np.radians(0.3)
+"""Step of differences by an angle, rad: larger than the error of a shape."""
 
 
 @dataclass(frozen=True)
 class MeasuredAngles:
     """Angles (rad) at which held boards come nearest to a wanted spread and depth (m).
 
-    ``observables`` are those with the boards held; ``met`` says that both wishes are.
+    ``observables`` are those with the boards held; ``met`` is True if both values are reached.
     """
 
     attack: float
@@ -45,12 +44,12 @@ class MeasuredAngles:
 
     @property
     def met(self) -> bool:
-        """True if spread and depth are those wanted within `MET`."""
-        return self.missed_by < MET
+        """True if spread and depth are as wanted, within `MAX_RELATIVE_MISS`."""
+        return self.missed_by < MAX_RELATIVE_MISS
 
     @property
     def missed_by(self) -> float:
-        """Larger of the parts by which the wishes for spread and depth are missed."""
+        """Larger of the relative differences of spread and depth from those wanted."""
         seen = self.observables
         return max(
             abs(seen.door_spread / self.spread - 1.0), abs(seen.door_depth / self.depth - 1.0)
@@ -58,17 +57,17 @@ class MeasuredAngles:
 
     @property
     def missed(self) -> str:
-        """Wishes that are not met, and by how much."""
+        """Values that are not reached, and by how much."""
         seen = self.observables
         pairs = ('spread', seen.door_spread, self.spread), ('depth', seen.door_depth, self.depth)
         return ' and '.join(
             f'the {name} by {100 * (value / wanted - 1):+.0f} %'
             for name, value, wanted in pairs
-            if abs(value / wanted - 1) >= MET
+            if abs(value / wanted - 1) >= MAX_RELATIVE_MISS
         )
 
     def told(self, tension: float | None = None) -> str:
-        """Sentence on what is met and what is nearest; ``tension`` (N) of a warp if measured."""
+        """Describe the result in a sentence; ``tension`` (N) of a warp if it was measured."""
         seen = self.observables
         found = (
             f'spread {seen.door_spread:.1f} m, door depth {seen.door_depth:.1f} m, tension '
@@ -76,11 +75,11 @@ class MeasuredAngles:
             f'δ {np.degrees(self.inclination):.1f}°'
         )
         if self.met:
-            sentence = f'wanted spread and depth are met: {found}'
+            sentence = f'the wanted spread and depth are reached: {found}'
         else:
             sentence = (
-                f'boards of this law cannot be {self.spread:.4g} m apart and {self.depth:.4g} m '
-                f'deep; nearest: {found}; missed: {self.missed}'
+                f'boards with this law cannot reach a spread of {self.spread:.4g} m and a depth of '
+                f'{self.depth:.4g} m; nearest: {found}; missed: {self.missed}'
             )
         if tension is not None:
             ratio = seen.warp_tension / tension
@@ -102,23 +101,23 @@ def angles_from(
     Parameters
     ----------
     model
-        The gear; its points only say where the bridles begin.
+        The gear; its points only determine where the bridles begin.
     spread, depth
-        Measured between the boards and of the boards, m.
+        Measured distance between the boards and depth of the boards, m.
     warp_length, speed
-        At which they were measured, m and m/s.
+        Operating point of the measurement, m and m/s.
     pitch
-        Of the boards, nose down, rad.
+        Pitch of the boards, nose down, rad.
 
     Returns
     -------
     MeasuredAngles
-        Within the range of the boards' law.
+        Angles within the range of the boards' law.
 
     Raises
     ------
     NoSteadyState
-        If the gear has no shape with its boards held.
+        If the gear has no shape with its boards held at any of the angles tried.
     GearError
         For a gear without boards.
     """
@@ -126,9 +125,9 @@ def angles_from(
     model = coarsest_model(model)
     low, high = model.board.law_range
     margin = 0.02 * (high - low)
-    # A pitched board leans at least by its pitch.
-    leans = LEANS if pitch == 0.0 else np.array([abs(pitch), LEANS[1]])
-    bounds = np.array([[low + margin, leans[0]], [high - margin, leans[1]]])
+    # The tilt of a pitched board is at least its pitch.
+    inclinations = inclination_range(pitch)
+    bounds = np.array([[low + margin, inclinations[0]], [high - margin, inclinations[1]]])
     search = _Search(model, spread, depth, (warp_length, speed), pitch)
     for share in STARTS:
         start = bounds[0] + np.multiply(share, bounds[1] - bounds[0])
@@ -138,25 +137,30 @@ def angles_from(
             search.missed,
             start,
             bounds=bounds,
-            diff_step=STEP,
+            diff_step=ANGLE_STEP,
             x_scale=[0.1, 0.2],
             xtol=1e-4,
             ftol=1e-6,
             max_nfev=15,
         )
-        # On a bound it is the board that cannot do more, not the search.
+        # On a bound the board cannot do more, so another start does not help.
         if found.active_mask.any() or (search.best is not None and search.best.met):
             break
     if search.best is None:
         raise NoSteadyState(
-            f'warp {warp_length:g} m at {speed:g} m/s: with its boards held at any angles the gear '
-            'finds no shape'
+            f'warp {warp_length:g} m at {speed:g} m/s: the gear has no shape with its boards held '
+            'at any of the angles tried'
         )
     return search.best
 
 
+def inclination_range(pitch: float) -> FloatArray:
+    """Return the range (2,) of inclinations sought at a pitch, rad."""
+    return INCLINATION_RANGE if pitch == 0.0 else np.array([abs(pitch), INCLINATION_RANGE[1]])
+
+
 class _Search:
-    """Shapes with held boards, one from another, and the nearest of them to what is wanted."""
+    """Shapes with held boards, each from the one before, and the nearest to the wanted values."""
 
     def __init__(
         self,
@@ -173,7 +177,7 @@ class _Search:
         self._held: HeldGear | None = None
 
     def begins(self, angles: FloatArray) -> bool:
-        """Find a shape anew; False where there is none."""
+        """Find a first shape; return False if there is none."""
         try:
             self._held = HeldGear(self.model, self._rotations(angles), [self.place])
         except NoSteadyState:
@@ -181,7 +185,7 @@ class _Search:
         return True
 
     def missed(self, angles: FloatArray) -> FloatArray:
-        """Parts (2,) by which spread and depth are missed."""
+        """Return the relative differences (2,) of spread and depth from those wanted."""
         assert self._held is not None
         try:
             self._held.turned(self._rotations(angles), self.model.board.points)

@@ -1,9 +1,9 @@
 """Trim over a range: fastening points at which boards work as wanted at many speeds and warps.
 
-Nine coordinates of three points balance three moments at one operating point; the other six are
-free. They are used so that the attitude changes little over a range of speeds and warp lengths, and
-so that what is not known of the moments turns the boards little: points near the centre of gravity
-would need no balance, and would hold nothing.
+Nine coordinates of three points balance three moments at one operating point; six remain free. They
+are chosen so that the attitude changes little over a range of speeds and warp lengths, and so that
+unknown moments turn the boards little. Points near the centre of gravity would balance too, but
+would have no stiffness.
 """
 
 from collections.abc import Sequence
@@ -25,38 +25,54 @@ from trawl_ros.solver.trimming.held_boards import HeldBoard
 from trawl_ros.solver.trimming.held_gear import HeldGear, attitude_at, coarsest_model
 from trawl_ros.solver.trimming.released import released_points
 
-TURNS = np.radians([5.0, 5.0, 2.0])
-"""Roll, pitch and yaw of a board that count alike: lift changes with yaw."""
+EQUAL_ROTATIONS = np.radians([5.0, 5.0, 2.0])
+"""Roll, pitch and yaw of a board with equal weight; yaw counts most because it changes lift."""
 
-UNKNOWN = 0.01, 0.02, 0.05
-"""Parts of the chord by which the centre of pressure may lie elsewhere than the board's law has it,
-tried in turn: the larger, the stiffer a rigging is sought."""
-
-NEAR = 3.0
-"""Move of a coordinate (m) from the rigging it starts from that counts as one of `TURNS`."""
-
-REACH = 0.3, 0.01
-"""Largest change of a coordinate at once, and the one at which the search ends, m."""
+CENTRE_SHIFTS_PER_CHORD = 0.01, 0.02, 0.05
+"""Uncertain shifts of the centre of pressure in chords, each tried: a larger one leads to a stiffer
+rigging."""
 
 MAX_HOLE_OFFSETS = 0.47, 0.2, 0.46
 """Largest distance of a hole from the centre of gravity: along the chord and off the face, where a
 bracket carries it (both in chords), and along the span (in spans)."""
 
-AT_BOUND = 1e-3
-"""Distance (m) from its bound at which a coordinate rests on it."""
+BOUND_TOLERANCE_M = 1e-3
+"""Distance from its bound at which a coordinate counts as on it."""
 
-ITERATIONS = 40
-SOFTEST = 1e-3
-"""Least stiffness against turns, as a part of force times chord, for which compliance counts."""
 
-FLUTTER = 0.5
-"""Part of an eigenvalue's imaginary part that is taken from its real one: turns about two axes that
-drive each other grow however stiff both are."""
+@dataclass(frozen=True)
+class HeldTrimOptions:
+    """Options of the search for points that hold boards stiffly.
+
+    Attributes
+    ----------
+    iterations
+        Iterations of the trust region.
+    first_reach_m, last_reach_m
+        Largest change of a coordinate in one iteration, and the one at which the search ends, m.
+    move_scale_m
+        Change of a coordinate from the first rigging that counts as one of `EQUAL_ROTATIONS`, m.
+    min_stiffness
+        Least stiffness against rotations, per force times chord; softer boards get a penalty.
+    flutter_ratio
+        Part of an eigenvalue's imaginary part subtracted from its real part: rotations about two
+        coupled axes can grow even if both are stiff.
+    """
+
+    iterations: int = 40
+    first_reach_m: float = 0.3
+    last_reach_m: float = 0.01
+    move_scale_m: float = 3.0
+    min_stiffness: float = 1e-3
+    flutter_ratio: float = 0.5
+
+
+OPTIONS = HeldTrimOptions()
 
 
 @dataclass(frozen=True)
 class RangePoint:
-    """An operating point of the range: its steady state, or the reason why there is none."""
+    """Operating point of the range: its steady state, or the reason why there is none."""
 
     warp_length: float
     speed: float
@@ -71,11 +87,11 @@ class RangeTrim:
     Attributes
     ----------
     points : (3, 3) array
-        Of warp, upper and lower bridle in the outward frame, m.
+        Points of warp, upper and lower bridle in the outward frame, m.
     model
         The gear with these points.
     found
-        Operating points of the range, warp by warp, with what the released gear does there.
+        Operating points of the range, warp by warp, with the state of the released gear.
     """
 
     points: FloatArray
@@ -84,9 +100,9 @@ class RangeTrim:
 
     @property
     def at_bounds(self) -> tuple[str, ...]:
-        """Coordinates that rest on the edge of the room for holes, each with its value (m)."""
+        """Coordinates on the edge of the room for holes, each with its value (m)."""
         names = product(('warp', 'upper bridle', 'lower bridle'), 'xyz')
-        rests = np.abs(self.points) > hole_limits(self.model.board) - AT_BOUND
+        rests = np.abs(self.points) > hole_limits(self.model.board) - BOUND_TOLERANCE_M
         return tuple(
             f'{point} {axis} {value:.3f} m'
             for (point, axis), value, bound in zip(names, self.points.flat, rests.flat, strict=True)
@@ -126,7 +142,7 @@ class RangeTrim:
 
 
 def hole_limits(board: Board) -> FloatArray:
-    """Largest distance (3,) of a hole from the centre of gravity, in the outward frame, m."""
+    """Return the largest distance (3,) of a hole from the centre of gravity, outward frame, m."""
     return np.multiply(MAX_HOLE_OFFSETS, (board.chord, board.chord, board.span))
 
 
@@ -145,25 +161,25 @@ def trim_over_range(
     Parameters
     ----------
     model
-        The gear; its points are where the search starts. Effects of its gear file act.
+        The gear. The search starts from its points. Effects of its gear file act.
     attack, inclination
-        Wanted α and δ, rad; the outward normal leans up, with a negative δ down.
+        Wanted α and δ, rad; the outward normal leans up, or down if δ is negative.
     pitch
         Wanted pitch of the boards, nose down, rad.
     warp_lengths, speeds
-        Of the range, m and m/s; every pair is an operating point.
+        Values of the range, m and m/s; every pair is an operating point.
     on_progress
         Called before each rigging that is tried, and after the last.
 
     Returns
     -------
     RangeTrim
-        The rigging with most usable states, among these the one with least change of attitude.
+        The rigging with most usable states; of these, the one with least change of attitude.
 
     Raises
     ------
     NoSteadyState
-        If with boards held at these angles the gear has no shape at one of the operating points.
+        If the gear has no shape with boards held at these angles at one of the operating points.
     GearError
         For a gear without boards.
 
@@ -188,7 +204,7 @@ def trim_over_range(
     start = model.board.points
     best = trim_held(held, start, on_progress=on_progress)
     wanted, limits = (attack, roll_for(inclination, pitch), pitch), hole_limits(model.board)
-    # Boards answer to the pull of the bridles, which the coarsest net has by some per cent only.
+    # The coarsest net gets the pull of the bridles right to a few per cent, so refine once.
     finer = coarser_model(model) or model
     starts = best.points, np.clip(start, -limits, limits)
     tried = *starts, *(released_points(finer, p, limits, wanted, places) for p in starts)
@@ -199,11 +215,11 @@ def trim_over_range(
 def trim_held(
     held: HeldGear,
     start: FloatArray,
-    unknown: Sequence[float] = UNKNOWN,
+    unknown: Sequence[float] = CENTRE_SHIFTS_PER_CHORD,
     *,
     on_progress: OnProgress = ignore,
 ) -> RangeTrim:
-    """Find fastening points by how stiffly they hold boards at their attitude.
+    """Find fastening points that hold boards stiffly at their attitude.
 
     Parameters
     ----------
@@ -212,14 +228,14 @@ def trim_held(
     start : (3, 3) array
         Points from which the search starts, m.
     unknown
-        Parts of the chord by which the centre of pressure may lie elsewhere, tried in turn.
+        Uncertain shifts of the centre of pressure in chords, each tried.
     on_progress
         Called before each rigging that is tried, and after the last.
 
     Returns
     -------
     RangeTrim
-        The best of the riggings, with what the released gear does there.
+        The best of the riggings, with the states of the released gear.
 
     Raises
     ------
@@ -236,16 +252,17 @@ def trim_held(
 
 
 def _worth(found: RangeTrim) -> tuple[int, float]:
-    """Usable states first, then little change of attitude."""
-    changes = np.array([found.by_speed, found.by_warp]) / TURNS[[2, 0]]
+    """Return the merit of a trim: usable states first, then little change of attitude."""
+    changes = np.array([found.by_speed, found.by_warp]) / EQUAL_ROTATIONS[[2, 0]]
     return found.usable, -float(np.nan_to_num(changes, nan=1e3).sum())
 
 
 def _merit(
     held: HeldGear, boards: Sequence[HeldBoard], points: FloatArray, unknown: float
 ) -> float:
-    """Mean squared turn of the boards when they are released, in `TURNS`, of which a part is
-    for moments that are not known.
+    """Return the mean squared rotation of the released boards, in `EQUAL_ROTATIONS`.
+
+    It includes rotations by the unknown moments of a shifted centre of pressure.
     """
     arms, chord, total = held.arms(points), held.model.board.chord, 0.0
     for board in boards:
@@ -253,26 +270,25 @@ def _merit(
         force = float(np.linalg.norm(board.load[:3]))
         axes = held.turn.T @ stiffness @ held.turn
         values = np.linalg.eigvals(axes) / (force * chord)
-        softest = float((values.real - FLUTTER * np.abs(values.imag)).min())
-        if softest < SOFTEST:
-            total += 1e4 * (1.0 + SOFTEST - softest)
+        softest = float((values.real - OPTIONS.flutter_ratio * np.abs(values.imag)).min())
+        if softest < OPTIONS.min_stiffness:
+            total += 1e4 * (1.0 + OPTIONS.min_stiffness - softest)
             continue
-        # Moments that are not known count where they turn both boards alike.
+        # Unknown moments are the same on both boards, so the mirrored stiffness counts.
         left = np.column_stack([held.turn.T @ moment, unknown * chord * force * np.eye(3)])
-        total += float(np.sum((np.linalg.solve(axes[0], left) / TURNS[:, None]) ** 2))
-    return total / len(boards) + float(np.sum(((points - held.model.board.points) / NEAR) ** 2))
+        total += float(np.sum((np.linalg.solve(axes[0], left) / EQUAL_ROTATIONS[:, None]) ** 2))
+    moves = (points - held.model.board.points) / OPTIONS.move_scale_m
+    return total / len(boards) + float(np.sum(moves**2))
 
 
 def _searched(held: HeldGear, start: FloatArray, unknown: float) -> FloatArray:
-    """Points (3, 3) of least merit, from those given; steps are kept small enough for the
-    shape to follow.
-    """
+    """Find the points (3, 3) of least rotation, in a trust region in which the shape can follow."""
     limits = hole_limits(held.model.board)
-    points, reach = np.clip(start, -limits, limits), REACH[0]
+    points, reach = np.clip(start, -limits, limits), OPTIONS.first_reach_m
     boards, states = held.boards(points), held.states
     value = _merit(held, boards, points, unknown)
-    for _ in range(ITERATIONS):
-        if reach < REACH[1]:
+    for _ in range(OPTIONS.iterations):
+        if reach < OPTIONS.last_reach_m:
             break
         bounds = np.stack(
             [
@@ -295,9 +311,9 @@ def _searched(held: HeldGear, start: FloatArray, unknown: float) -> FloatArray:
             continue
         worth = _merit(held, there, trial, unknown)
         if worth < value:
-            settled = value - worth < 1e-3 * value
+            converged = value - worth < 1e-3 * value
             points, boards, states, value = trial, there, held.states, worth
-            if settled:
+            if converged:
                 break
         else:
             held.states, reach = states, 0.3 * reach

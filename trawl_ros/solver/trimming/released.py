@@ -1,8 +1,8 @@
-"""Trim of released boards: fastening points that bring their angles over a range near the wanted.
+"""Trim of released boards: fastening points that give nearly the wanted angles over a range.
 
-The search of `over_range` holds the boards and reckons with how stiffly they are held. Here they
-are free, so its result is improved by what the gear really does. Nine coordinates are fitted by
-least squares, within the room that a board has for holes.
+The search of `over_range` holds the boards and considers their stiffness. Here they are free, so
+the real response of the gear improves its result. Nine coordinates are fitted by least squares,
+within the room that a board has for holes.
 """
 
 from collections.abc import Sequence
@@ -25,26 +25,26 @@ class ReleasedTrim:
     Attributes
     ----------
     attack, roll, pitch : float
-        Differences (rad) from the wanted angles that count as one.
+        Difference (rad) from the wanted angle that counts as one.
     surfaced : float
         Height (m) above ``clearance`` that counts as one.
     clearance : float
-        Depth (m) above which the highest point of the gear ought not to come.
+        Least depth (m) of the highest point of the gear.
     upset : float
-        Turn (rad, ε) of the boards against their rigging that they ought to stand: attack falls by
-        as much when warp is paid out, for tension falls sooner than the flow.
+        Rotation (rad, ε) of the boards against their rigging that they must stand: attack falls by
+        as much when warp is paid out, because tension falls before the speed of the flow.
     least_roll, least_attack : float
-        Roll and attack (rad) that boards turned so ought to keep.
+        Roll and attack (rad) that boards must keep under this rotation.
     short_of_roll, short_of_attack : float
-        Lack (rad) of these that counts as one.
+        Shortfall (rad) that counts as one.
     lost : float
         Residual of a place without an equilibrium.
     moved : float
-        Move of a coordinate (m) that counts as one; it settles what the angles leave open.
+        Change of a coordinate (m) that counts as one; it decides what the angles leave free.
     step : float
-        Step (m) of the differences that make the Jacobian.
+        Step (m) of the differences for the Jacobian.
     evaluations : int
-        Most evaluations of the residuals.
+        Largest number of evaluations of the residuals.
     """
 
     attack: float = np.radians(4.0)
@@ -84,15 +84,15 @@ def released_points(
     wanted
         Attack, roll and pitch, rad.
     places
-        Warp length (m) and speed (m/s) of each operating point. Those that have no equilibrium
-        with the first points are left out.
+        Warp length (m) and speed (m/s) of each operating point. Those without an equilibrium with
+        the first points are left out.
     options
         Weights.
 
     Returns
     -------
     (3, 3) array
-        Points; the first ones where no operating point has an equilibrium with them.
+        Points; the first ones if no operating point has an equilibrium with them.
     """
     upset = model.with_board(
         installation=tuple(np.add(model.board.installation, (options.upset, 0, 0)))
@@ -141,7 +141,7 @@ def released_points(
 def _miss(
     found: Equilibrium, wanted: tuple[float, float, float], options: ReleasedTrim
 ) -> FloatArray:
-    """Weighted differences (4,) from the wanted angles, and height above the clearance."""
+    """Return weighted differences (4,) from the wanted angles, and height above the clearance."""
     seen = found.observables
     return np.array(
         [
@@ -154,7 +154,7 @@ def _miss(
 
 
 def _lack(found: Equilibrium, options: ReleasedTrim) -> FloatArray:
-    """Weighted lack (2,) of roll and attack of boards that are upset."""
+    """Return the weighted shortfall (2,) of roll and attack of upset boards."""
     seen = found.observables
     return np.array(
         [
@@ -167,6 +167,6 @@ def _lack(found: Equilibrium, options: ReleasedTrim) -> FloatArray:
 def _root(
     model: GearModel, points: FloatArray, place: tuple[float, float], near: State | None
 ) -> Equilibrium:
-    """Equilibrium at a warp length and speed, from a state nearby if there is one."""
+    """Find the equilibrium at a warp length and speed, from a state nearby if there is one."""
     acting, point = with_effects(model.with_board(points=points), (place[0],) * 2, place[1])
     return find_equilibrium(acting, point, near=near, cold=near is None)

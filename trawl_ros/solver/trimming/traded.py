@@ -1,6 +1,4 @@
-"""Trim that may change bridles, weights, floats or boards too, where fastening points do not meet a
-wish.
-"""
+"""Trim that may also change bridles, weights, floats or boards, if points are not enough."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,26 +16,26 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
 from trawl_ros.solver.advising.rig_changes import RigChange
 from trawl_ros.solver.trimming.held_gear import HeldGear, attitude_at, coarsest_model
-from trawl_ros.solver.trimming.measured import LEANS, STEP, MeasuredAngles
+from trawl_ros.solver.trimming.measured import ANGLE_STEP, MeasuredAngles, inclination_range
 from trawl_ros.solver.trimming.over_range import RangeTrim, trim_over_range
 
-SPARING = 0.002
-"""Miss of a wish, as a part of it, that weighs as much as the largest amount of a change: what is
-not needed is not changed."""
+MISS_PER_LARGEST_CHANGE = 0.002
+"""Relative miss of a wanted value that weighs as much as the largest change, which avoids useless
+changes."""
 
-DIFFERENCE = 0.02
-"""Change of an amount for differences, as a part of the largest."""
+RELATIVE_AMOUNT_STEP = 0.02
+"""Step of differences by an amount, relative to the largest."""
 
-WORTH_TELLING = 0.005
-"""Part of the largest amount below which a change is left out."""
+MIN_RELATIVE_AMOUNT = 0.005
+"""Amount, relative to the largest, below which a change is left out."""
 
-SHARES = 0.5, 1.0
-"""Parts of the largest amount of a change that are tried where operating points are not usable."""
+TRIED_FRACTIONS = 0.5, 1.0
+"""Fractions of the largest amount that are tried where operating points are not usable."""
 
 EVALUATIONS = 25
 
-ROOM = MappingProxyType({'bridles': 4.0})
-"""Largest amounts in a trade over those that advice thinks of, by kind: a wish may cost more."""
+AMOUNT_FACTORS = MappingProxyType({'bridles': 4.0})
+"""Factors on the largest amounts of advice, by kind: a wanted value may need more."""
 
 
 @dataclass(frozen=True)
@@ -47,13 +45,13 @@ class Traded:
     changes: tuple[tuple[RigChange, float], ...] = ()
 
     def model(self, model: GearModel) -> GearModel:
-        """The changed gear as a model."""
+        """Return the model of the changed gear."""
         for change, amount in self.changes:
             model, _ = change.applied(model, 100.0, amount)
         return model
 
     def gear(self, gear: GearRecord) -> GearRecord:
-        """The changed gear as its file has it."""
+        """Return the record of the changed gear, for its file."""
         for change, amount in self.changes:
             gear = change.recorded(gear, amount)
         return gear
@@ -80,25 +78,25 @@ def trade_for_place(
     model
         The gear.
     changes
-        Changes that may be made.
+        Changes that are allowed.
     near
-        Angles that come nearest without them, and the wish.
+        Nearest angles without changes, and the wanted values.
     warp_length, speed, pitch
         As `angles_from` has them.
 
     Returns
     -------
     angles, traded
-        Angles that meet the wish or come nearest, and the changes with which they do.
+        Angles that reach the wanted values or come nearest, and the changes for them.
     """
     coarse, place = coarsest_model(model), (warp_length, speed)
     low, high = coarse.board.law_range
     margin = 0.02 * (high - low)
-    leans = LEANS if pitch == 0.0 else np.array([abs(pitch), LEANS[1]])
+    inclinations = inclination_range(pitch)
     room = np.ones(len(changes))
     bounds = (
-        np.concatenate([[low + margin, leans[0]], 0.0 * room]),
-        np.concatenate([[high - margin, leans[1]], 2.0 * room]),
+        np.concatenate([[low + margin, inclinations[0]], 0.0 * room]),
+        np.concatenate([[high - margin, inclinations[1]], 2.0 * room]),
     )
 
     def rotations(angles: FloatArray) -> FloatArray:
@@ -110,7 +108,7 @@ def trade_for_place(
 
     def missed(x: FloatArray) -> FloatArray:
         nonlocal best, least
-        # Steps of differences are parts of x: amounts count from 1.
+        # SciPy takes steps relative to x, which must not be 0: amounts are counted from 1.
         amounts = x[2:] - 1.0
         traded = _traded(changes, amounts)
         try:
@@ -121,7 +119,7 @@ def trade_for_place(
         (acting, tow), state = held.acting[0], held.states[0]
         seen = observe(acting, state, tow)
         wish = np.array([seen.door_spread / near.spread, seen.door_depth / near.depth]) - 1.0
-        left = np.concatenate([wish, SPARING * amounts])
+        left = np.concatenate([wish, MISS_PER_LARGEST_CHANGE * amounts])
         if (miss := float(left @ left)) < least:
             least = miss
             angles = MeasuredAngles(float(x[0]), float(x[1]), near.spread, near.depth, seen)
@@ -132,7 +130,7 @@ def trade_for_place(
         missed,
         np.concatenate([first, room]),
         bounds=bounds,
-        diff_step=[STEP, STEP, *(DIFFERENCE * room)],
+        diff_step=[ANGLE_STEP, ANGLE_STEP, *(RELATIVE_AMOUNT_STEP * room)],
         x_scale=[0.1, 0.2, *room],
         xtol=1e-4,
         ftol=1e-6,
@@ -151,16 +149,16 @@ def trade_for_range(
     pitch: float = 0.0,
     on_progress: OnProgress = ignore,
 ) -> tuple[RangeTrim, Traded]:
-    """Find a change of the rigging with which all of a range can be towed.
+    """Find a change of the rigging with which the whole range can be towed.
 
     Parameters
     ----------
     model
         The gear.
     changes
-        Changes of which one may be made.
+        Changes, of which one may be made.
     found
-        The trim without them.
+        The trim without changes.
     attack, inclination, pitch
         As `trim_over_range` has them.
     on_progress
@@ -169,7 +167,7 @@ def trade_for_range(
     Returns
     -------
     trimmed, traded
-        The trim with most usable states, and the change with which it has them.
+        The trim with most usable states, and its change.
     """
     again = partial(
         trim_over_range,
@@ -181,7 +179,12 @@ def trade_for_range(
     )
     best, traded = found, Traded()
     coarse = coarsest_model(model)
-    trials = [(change, sign * share) for share in SHARES for change in changes for sign in (1, -1)]
+    trials = [
+        (change, sign * share)
+        for share in TRIED_FRACTIONS
+        for change in changes
+        for sign in (1, -1)
+    ]
     for done, (change, share) in enumerate(trials):
         on_progress(WorkProgress('traded riggings', done, len(trials), change.kind))
         tried = Traded(((change, share * _most(change)),))
@@ -200,8 +203,8 @@ def trade_for_range(
 
 
 def _most(change: RigChange) -> float:
-    """Largest amount of a change."""
-    return ROOM.get(change.kind, 1.0) * change.most
+    """Return the largest amount of a change."""
+    return AMOUNT_FACTORS.get(change.kind, 1.0) * change.most
 
 
 def _traded(changes: Sequence[RigChange], amounts: FloatArray) -> Traded:
@@ -209,6 +212,6 @@ def _traded(changes: Sequence[RigChange], amounts: FloatArray) -> Traded:
         tuple(
             (change, float(amount) * _most(change))
             for change, amount in zip(changes, amounts, strict=True)
-            if abs(amount) > WORTH_TELLING
+            if abs(amount) > MIN_RELATIVE_AMOUNT
         )
     )

@@ -8,8 +8,8 @@ from trawl_ros.model.assembly import board_loads, forces
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State
 from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.first_guess import attitudes
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
-from trawl_ros.solver.trim import attitudes
 
 ATTACK, SLIP = np.radians(20.0), np.radians(-4.0)
 SPEED = 2.1

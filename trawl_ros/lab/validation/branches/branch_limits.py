@@ -17,9 +17,8 @@ from trawl_ros.model.state import Tow
 from trawl_ros.report.pictures import Drawing
 from trawl_ros.solver.continuation import BranchPoint, Family, branch
 from trawl_ros.solver.equilibrium import find_equilibrium
-from trawl_ros.solver.growing_mode import growing_mode
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
-from trawl_ros.solver.stability import stability
+from trawl_ros.solver.stability import growing_mode, stability
 
 WORKING = 1.9
 """Slowest speed (m/s) at which the gear is towed."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.api.gear_check import SPEEDS, drag_of_model, drag_of_net
+from trawl_ros.api.gear_check import DRAG_SPEEDS_KN, drag_of_model, drag_of_net
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.drag_bands import KNOT, maclennan, reid
 from trawl_ros.gear.load import load_gear
@@ -64,7 +64,7 @@ def whole_nets(names: Sequence[str]) -> list[WholeNet]:
         gear = load_gear(name)
         model = build_model(gear)
         area = sum(bar.area * bar.rest for bar in model.net_mesh.bars)
-        built = {knots: drag_of_model(model, knots) for knots in SPEEDS}
+        built = {knots: drag_of_model(model, knots) for knots in DRAG_SPEEDS_KN}
         coarse = build_model(gear.refined(net=NET_FINENESS_FACTOR))
         nets.append(WholeNet(name, float(area), built, _towed(coarse, NETS[name])))
     return nets

@@ -16,8 +16,8 @@ from trawl_ros.model.observables import observe
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import Observables
 from trawl_ros.solver.equilibrium import Equilibrium
-from trawl_ros.solver.relax import TOLERANCE, relax, without_attitude
-from trawl_ros.solver.trim import attitudes
+from trawl_ros.solver.first_guess import attitudes
+from trawl_ros.solver.relax import FORCE_TOLERANCE, relax, without_attitude
 
 FORCES = ('c1', 'c2', 'c3')
 """Constants of eq. 14 that are C_x^F, C_y^F and C_z^F where the slopes are zero."""
@@ -61,11 +61,11 @@ def point_observables(
         model,
         start,
         near.tow,
-        tolerance=TOLERANCE,
+        tolerance=FORCE_TOLERANCE,
         time_step=5.0,
         free=without_attitude(model),
     )
-    if residual > TOLERANCE:
+    if residual > FORCE_TOLERANCE:
         raise NoSteadyState(
             f'warp {near.point.port_length:g} m at {near.point.speed:g} m/s, boards as points: '
             f'no steady state found in {iterations} iterations, {residual:.3g} N left'

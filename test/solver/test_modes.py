@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trawl_ros.solver.linear.arnoldi import ritz_pairs
+from trawl_ros.solver.modes import ritz_pairs
 
 
 @pytest.mark.parametrize('kind', [float, complex])

@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from trawl_ros.cli.trim_lines import state_line
+from trawl_ros.cli.trim import state_line
 from trawl_ros.records.observables import OBSERVABLES, Observables
 
 

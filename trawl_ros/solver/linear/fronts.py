@@ -1,8 +1,8 @@
-"""Numerical factorisation front by front, and solution with the factors: compiled.
+"""Compiled factorisation front by front, and solution with the factors.
 
-Fronts are dense and row-major. Pivots are exchanged within the pivot rows of a front alone, so the
-order found for the pattern stands; `trawl_ros.solver.linear.factor` looks whether that was good
-enough. All takes real matrices, and complex ones.
+Fronts are dense and row-major. Pivots are exchanged only within the pivot rows of a front, so the
+order found for the pattern stays valid; `trawl_ros.solver.linear.factor` checks the accuracy. All
+functions accept real and complex matrices.
 """
 
 import numpy as np
@@ -13,11 +13,14 @@ from trawl_ros.model.compiled import fused, inlined
 PIVOTS, SIZE, CHILDREN, ENTRIES, BORDER, ROWS, FACTORS = range(7)
 """Columns of `Elimination.fronts`."""
 
-PANEL = 6
-"""Pivots that are eliminated together: their rows stay in registers while the rest is updated."""
+PIVOTS_AT_ONCE = 6
+"""Pivots eliminated together; their rows stay in registers while the rest is updated."""
 
-EXCHANGE = 10.0
-"""A pivot is exchanged with one so many times as large."""
+EXCHANGE_RATIO = 10.0
+"""A pivot is exchanged if another of its front is larger by this factor."""
+
+RIGHTS = 24
+"""Right-hand sides of a panel in `solve_many`."""
 
 
 @fused
@@ -34,9 +37,9 @@ def factorise(
 ) -> bool:
     """Factorise the matrix of ``data`` into ``factors``; False if a pivot vanished.
 
-    ``exchanged`` (dof,) gets the pivot row with which each changed places; ``space`` (2, ...) is
-    for the front at work and the one before, which is its last child unless it has none; what is
-    left of other children is ``waiting``.
+    ``exchanged`` (dof,) receives the pivot row with which each row changed places. ``space``
+    (2, ...) holds the current front and the one before, which is its last child if it has any.
+    ``waiting`` holds the update matrices of the other children.
     """
     stack = np.empty(len(fronts), np.int64)
     held = end = entry = first = 0
@@ -84,7 +87,7 @@ def factorise(
 
 @inlined
 def _add_rest(rest: FloatArray, rows: IntArray, front: FloatArray) -> None:
-    """Add what is left of a child's border into its parent's front, block by block."""
+    """Add the update matrix of a child to the front of its parent, block by block (extend-add)."""
     for i in range(len(rest)):
         source, target = rest[i], front[rows[i // 3] + i % 3]
         for j in range(len(rows)):
@@ -97,11 +100,12 @@ def _add_rest(rest: FloatArray, rows: IntArray, front: FloatArray) -> None:
 @inlined
 def _eliminate(front: FloatArray, pivots: int, exchanged: IntArray) -> bool:
     """Eliminate the pivots of a front in place: L below its diagonal, U above, 1 / U on it."""
+    # A blocked right-looking LU: factorise a panel of columns, finish its rows, update the rest.
     size = len(front)
-    for first in range(0, pivots, PANEL):
-        last = min(first + PANEL, pivots)
+    for first in range(0, pivots, PIVOTS_AT_ONCE):
+        last = min(first + PIVOTS_AT_ONCE, pivots)
         for k in range(first, last):
-            best, chosen = EXCHANGE * abs(front[k, k]), k
+            best, chosen = EXCHANGE_RATIO * abs(front[k, k]), k
             for i in range(k + 1, pivots):
                 if abs(front[i, k]) > best:
                     best, chosen = abs(front[i, k]), i
@@ -123,7 +127,7 @@ def _eliminate(front: FloatArray, pivots: int, exchanged: IntArray) -> bool:
                 share = front[k, i]
                 for j in range(last, size):
                     front[k, j] -= share * front[i, j]
-        if last - first == PANEL:
+        if last - first == PIVOTS_AT_ONCE:
             _update_by_six(front, first)
         else:
             _update_by_three(front, first)
@@ -132,7 +136,7 @@ def _eliminate(front: FloatArray, pivots: int, exchanged: IntArray) -> bool:
 
 @inlined
 def _update_by_six(front: FloatArray, k: int) -> None:
-    """Subtract the product of six columns of L and six rows of U from all behind them."""
+    """Subtract the product of six columns of L and six rows of U from the trailing matrix."""
     size, end = len(front), k + 6
     u0, u1, u2 = front[k, end:], front[k + 1, end:], front[k + 2, end:]
     u3, u4, u5 = front[k + 3, end:], front[k + 4, end:], front[k + 5, end:]
@@ -146,7 +150,7 @@ def _update_by_six(front: FloatArray, k: int) -> None:
 
 @inlined
 def _update_by_three(front: FloatArray, k: int) -> None:
-    """Subtract the product of three columns of L and three rows of U from all behind them."""
+    """Subtract the product of three columns of L and three rows of U from the trailing matrix."""
     size, end = len(front), k + 3
     u0, u1, u2 = front[k, end:], front[k + 1, end:], front[k + 2, end:]
     for i in range(end, size):
@@ -168,8 +172,8 @@ def solve(
 ) -> None:
     """Solve for right-hand sides (k, dof) with the factors, one after another.
 
-    Pivots are taken in threes, which is one block of unknowns: rows of L and U are read side by
-    side.
+    Pivots are taken in threes, one block of unknowns, so that three rows of a factor are read in
+    one pass.
     """
     largest = 0
     for number in range(len(fronts)):
@@ -233,3 +237,128 @@ def solve(
                 y[k], y[k + 1], y[k + 2] = a, b, c
         for k in range(len(order)):
             solutions[right, order[k]] = x[k]
+
+
+@fused
+def solve_many(
+    rights: FloatArray,
+    order: IntArray,
+    fronts: IntArray,
+    border: IntArray,
+    factors: FloatArray,
+    exchanged: IntArray,
+    solutions: FloatArray,
+) -> None:
+    """Solve for many right-hand sides (dof, m) with the factors, in panels of a fixed width.
+
+    Each number of the factors is used for a whole panel while it is in a register. The width is a
+    compile-time constant, so the compiler can vectorise and rule out overlapping rows.
+    """
+    panel = np.empty(RIGHTS * len(order), rights.dtype)
+    for begin in range(0, rights.shape[1], RIGHTS):
+        wide = min(RIGHTS, rights.shape[1] - begin)
+        for k in range(len(order)):
+            row, given = panel[RIGHTS * k : RIGHTS * k + RIGHTS], rights[order[k]]
+            for m in range(wide):
+                row[m] = given[begin + m]
+            for m in range(wide, RIGHTS):
+                row[m] = 0.0
+        _solve_panel(fronts, border, factors, exchanged, panel)
+        for k in range(len(order)):
+            row, found = panel[RIGHTS * k : RIGHTS * k + RIGHTS], solutions[order[k]]
+            for m in range(wide):
+                found[begin + m] = row[m]
+
+
+@fused
+def _solve_panel(
+    fronts: IntArray,
+    border: IntArray,
+    factors: FloatArray,
+    exchanged: IntArray,
+    panel: FloatArray,
+) -> None:
+    first = 0
+    for number in range(len(fronts)):
+        pivots, size, at = fronts[number, PIVOTS], fronts[number, SIZE], fronts[number, FACTORS]
+        edge, begin = size - pivots, fronts[number, BORDER]
+        upper = factors[at : at + pivots * size].reshape(pivots, size)
+        at += pivots * size
+        lower = factors[at : at + pivots * edge].reshape(pivots, edge)
+        for k in range(pivots):
+            other = exchanged[first + k]
+            if other != k:
+                for m in range(RIGHTS):
+                    i, j = RIGHTS * (first + k) + m, RIGHTS * (first + other) + m
+                    panel[i], panel[j] = panel[j], panel[i]
+        for k in range(0, pivots, 3):
+            three = _block(panel, first + k)
+            for j in range(0, k, 3):
+                _subtract(three, upper[k : k + 3, j : j + 3], _block(panel, first + j))
+            a, b, c = upper[k + 1, k], upper[k + 2, k], upper[k + 2, k + 1]
+            for m in range(RIGHTS):
+                value = three[RIGHTS + m] - a * three[m]
+                three[RIGHTS + m] = value
+                three[2 * RIGHTS + m] -= b * three[m] + c * value
+        for i in range(0, edge, 3):
+            three = _block(panel, border[begin + i])
+            for k in range(0, pivots, 3):
+                _subtract(three, lower[k : k + 3, i : i + 3].T, _block(panel, first + k))
+        first += pivots
+    for number in range(len(fronts) - 1, -1, -1):
+        pivots, size, at = fronts[number, PIVOTS], fronts[number, SIZE], fronts[number, FACTORS]
+        edge, begin = size - pivots, fronts[number, BORDER]
+        upper = factors[at : at + pivots * size].reshape(pivots, size)
+        first -= pivots
+        for k in range(pivots - 3, -1, -3):
+            three, rows = _block(panel, first + k), upper[k : k + 3]
+            for i in range(0, edge, 3):
+                at = pivots + i
+                _subtract(three, rows[:, at : at + 3], _block(panel, border[begin + i]))
+            for j in range(k + 3, pivots, 3):
+                _subtract(three, rows[:, j : j + 3], _block(panel, first + j))
+            a, b, c = rows[0, k + 1], rows[0, k + 2], rows[1, k + 2]
+            inverse = rows[0, k], rows[1, k + 1], rows[2, k + 2]
+            for m in range(RIGHTS):
+                last = three[2 * RIGHTS + m] * inverse[2]
+                value = (three[RIGHTS + m] - c * last) * inverse[1]
+                three[2 * RIGHTS + m] = last
+                three[RIGHTS + m] = value
+                three[m] = (three[m] - a * value - b * last) * inverse[0]
+
+
+@inlined
+def _block(panel: FloatArray, row: int) -> FloatArray:
+    """Return three consecutive rows of a panel, from this one."""
+    return panel[RIGHTS * row : RIGHTS * row + 3 * RIGHTS]
+
+
+@inlined
+def _subtract(three: FloatArray, share: FloatArray, others: FloatArray) -> None:
+    """Subtract a matrix (3, 3) times three rows from three rows."""
+    a, b, c = share[0, 0], share[0, 1], share[0, 2]
+    d, e, f = share[1, 0], share[1, 1], share[1, 2]
+    g, h, i = share[2, 0], share[2, 1], share[2, 2]
+    for m in range(RIGHTS):
+        x, y, z = others[m], others[RIGHTS + m], others[2 * RIGHTS + m]
+        three[m] -= a * x + b * y + c * z
+        three[RIGHTS + m] -= d * x + e * y + f * z
+        three[2 * RIGHTS + m] -= g * x + h * y + i * z
+
+
+def dense_solution(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
+    """Solve a small dense system (k, k) as a single front; None where the matrix is singular.
+
+    LAPACK would start threads here, which cost more than they save at this size.
+    """
+    size = len(right)
+    every, nothing = np.arange(size * size, dtype=np.uint32), np.empty(0, np.uint32)
+    fronts = np.array([[size, size, 0, size * size, 0, 0, 0]])
+    factors, exchanged = np.empty(size * size), np.empty(size, np.int64)
+    space = np.empty(0), np.empty((2, size * size))
+    if not factorise(matrix.ravel(), fronts, every, every, nothing, factors, exchanged, *space):
+        return None
+    solution = np.empty((1, size))
+    solve(right.reshape(1, -1), np.arange(size), fronts, nothing, factors, exchanged, solution)
+    found: FloatArray = solution[0]
+    return found

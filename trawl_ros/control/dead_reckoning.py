@@ -1,4 +1,4 @@
-"""State estimate of the ship for the autopilot: heading, position, current from samples."""
+"""Dead reckoning of the ship for the autopilot: heading, position and current from samples."""
 
 import math
 
@@ -13,25 +13,25 @@ from trawl_ros.records.samples import FixSample, HeadingSample, SchoolsSample, V
 
 NavigationSample = HeadingSample | FixSample | VelocitySample | SchoolsSample
 
-LOST_S = 5.0
+SENSOR_TIMEOUT_S = 5.0
 """A sensor that is silent for longer is lost."""
 
-DEAD_RECKONED_S = 120.0
-"""So long a place can be carried on by velocity over ground alone."""
+MAX_DEAD_RECKONING_S = 120.0
+"""Longest time for which a position is extrapolated by velocity over ground."""
 
-FIX_SHARE = 0.2
+FIX_GAIN = 0.2
 """Filter gain of a fix's deviation from dead reckoning."""
 
-CURRENT_S = 60.0
-SPEED_S = 10.0
+CURRENT_TIME_CONSTANT_S, SPEED_TIME_CONSTANT_S = 60.0, 10.0
+"""Time constants of the low-pass filters of current and speed."""
 
 
-class Bearings:
+class DeadReckoning:
     """Dead reckoning of heading, position, speed and current.
 
-    The place is reckoned by the velocity over ground and drawn to each fix. The current is what
-    velocity over ground has more than heading and speed log, so an error of the compass across
-    the ship's way counts as current too, and is made up for like one.
+    The position is extrapolated by the velocity over ground and corrected by each fix. The current
+    is the velocity over ground minus that through the water by heading and log. An error of the
+    compass therefore appears as a cross current, and is compensated like one.
 
     Parameters
     ----------
@@ -45,8 +45,8 @@ class Bearings:
         self._position: FloatArray | None = None
         self._ground: FloatArray | None = None
         self._water = np.zeros(2)
-        self._current = (LowPass(CURRENT_S), LowPass(CURRENT_S))
-        self._speed = LowPass(SPEED_S)
+        self._current = (LowPass(CURRENT_TIME_CONSTANT_S), LowPass(CURRENT_TIME_CONSTANT_S))
+        self._speed = LowPass(SPEED_TIME_CONSTANT_S)
         self._heard: dict[str, int] = {}
         self._reckoned_at = 0
         self.schools = np.zeros((0, 2))
@@ -68,15 +68,15 @@ class Bearings:
         return velocity if np.isfinite(velocity).all() else np.zeros(2)
 
     def position(self, stamp: int) -> FloatArray | None:
-        """Position (2,), east and north, m, at a stamp (ns); None where it is out of date."""
-        if self._position is None or self.age('fix', stamp) > DEAD_RECKONED_S:
+        """Return the position (2,), east and north, m, at a stamp (ns); None if out of date."""
+        if self._position is None or self.age('fix', stamp) > MAX_DEAD_RECKONING_S:
             return None
         if self._ground is None:
             return self._position
         return self._position + self._ground * (stamp - self._reckoned_at) / SECOND
 
     def age(self, what: str, stamp: int) -> float:
-        """Age (s) of the last sample: 'heading', 'fix', 'water', 'ground' or 'schools'."""
+        """Return the age (s) of the last heading, fix, water, ground or schools sample."""
         heard = self._heard.get(what)
         return math.inf if heard is None else (stamp - heard) / SECOND
 
@@ -108,12 +108,12 @@ class Bearings:
         if reckoned is None:
             self._position = fix
         else:
-            self._position = reckoned + FIX_SHARE * (fix - reckoned)
+            self._position = reckoned + FIX_GAIN * (fix - reckoned)
         self._reckoned_at = sample.stamp
         self._heard['fix'] = sample.stamp
 
     def _take_velocity(self, sample: VelocitySample) -> None:
-        since = min(self.age(sample.over, sample.stamp), LOST_S)
+        since = min(self.age(sample.over, sample.stamp), SENSOR_TIMEOUT_S)
         self._heard[sample.over] = sample.stamp
         if sample.over == 'water':
             self._speed.take(float(np.hypot(*sample.velocity[:2])), since)
@@ -122,7 +122,7 @@ class Bearings:
         if (reckoned := self.position(sample.stamp)) is not None:
             self._position, self._reckoned_at = reckoned, sample.stamp
         self._ground = sample.velocity[:2]
-        if self._heading is None or self.age('water', sample.stamp) > LOST_S:
+        if self._heading is None or self.age('water', sample.stamp) > SENSOR_TIMEOUT_S:
             return
         cos, sin = math.cos(self._heading), math.sin(self._heading)
         ahead, port = self._water

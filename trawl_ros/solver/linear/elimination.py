@@ -2,9 +2,9 @@
 
 Unknowns come in threes (a node; a board's place; its turn), so the graph that is eliminated has a
 vertex for each block of 3 × 3. A front is a dense matrix of some pivot blocks and of the border of
-later blocks that they touch; what is left of the border after elimination is added into the front
-of its parent (multifrontal method: Duff and Reid 1983). All depends on the pattern alone and is
-found once for a gear.
+later blocks that they touch. After elimination the Schur complement of the border is added to the
+front of its parent (multifrontal method: Duff and Reid 1983). All of it depends only on the
+pattern and is computed once for a gear.
 """
 
 from dataclasses import dataclass
@@ -18,25 +18,36 @@ from scipy.sparse.linalg import splu
 from trawl_ros.core.arrays import IntArray
 from trawl_ros.model.pattern import SparsityPattern
 
-WIDTH = 3
+BLOCK = 3
 """Unknowns of a block."""
 
-MERGED_ZEROS = 4
-"""Blocks of zeros with which a front may join its parent's: fewer and larger fronts are faster,
-though they hold a little more."""
+MAX_MERGED_ZERO_BLOCKS = 4
+"""Zero blocks that merging a front into its parent may add: fewer, larger fronts are faster."""
 
 
 @dataclass(frozen=True, eq=False)
 class Elimination:
     """Order of elimination of a pattern's unknowns, and its fronts in this order.
 
-    ``order`` (dof,) are the unknowns as they are eliminated. ``fronts`` (n, 7) has a row for each
-    front: number of its pivots, its size, number of its children, where its entries end in
-    ``slots`` and ``places``, where its border begins in ``border`` (unknowns in this order) and in
-    ``parents_rows`` (their rows in the parent's front), and where its factors begin. The entry of
-    the matrix at ``slots[k]`` goes to ``places[k]`` of its flattened front. ``fill`` numbers are in
-    the factors, ``largest`` ** 2 in the largest front, ``waiting`` in borders that wait for their
-    parent at most.
+    Attributes
+    ----------
+    order : (dof,) array
+        Unknowns in the order of elimination.
+    fronts : (n, 7) array
+        For each front: number of pivots, size, number of children, end of its entries in ``slots``
+        and ``places``, start in ``border``, start in ``parents_rows``, start of its factors.
+    slots, places : arrays
+        The matrix entry at ``slots[k]`` goes to ``places[k]`` of its flattened front.
+    border
+        Unknowns of the borders, in the order of elimination.
+    parents_rows
+        Their rows in the parent's front, one for each block.
+    fill
+        Number of values in the factors.
+    largest
+        Size of the largest front.
+    waiting
+        Largest number of values in update matrices that wait for their parents.
     """
 
     order: IntArray
@@ -62,22 +73,22 @@ class _Front:
 @lru_cache(maxsize=16)
 def elimination(pattern: SparsityPattern) -> Elimination:
     """Find the order of elimination and the fronts of a pattern."""
-    starts = pattern.indptr[::WIDTH]
+    starts = pattern.indptr[::BLOCK]
     touched = [
-        pattern.indices[start : start + count : WIDTH] // WIDTH
-        for start, count in zip(starts, np.diff(pattern.indptr)[::WIDTH], strict=False)
+        pattern.indices[start : start + count : BLOCK] // BLOCK
+        for start, count in zip(starts, np.diff(pattern.indptr)[::BLOCK], strict=False)
     ]
     sequence = _minimum_degree(touched)
     return _numbered(pattern, sequence, _postordered(_trees(touched, sequence)))
 
 
 def _minimum_degree(touched: list[IntArray]) -> IntArray:
-    """Blocks in an order of minimum degree, which fills in little."""
+    """Order the blocks by minimum degree, which keeps the fill low."""
     count = len(touched)
     indices = np.concatenate(touched)
     indptr = np.concatenate([[0], np.cumsum([len(blocks) for blocks in touched])])
     diagonal = indices == np.repeat(np.arange(count), np.diff(indptr))
-    # Any values will do that keep the pivots on the diagonal.
+    # SuperLU only orders here; these values keep its pivots on the diagonal.
     graph = sp.csc_matrix((np.where(diagonal, 1.0, 1e-3 / count), indices, indptr))
     found = splu(graph, permc_spec='MMD_AT_PLUS_A', options={'SymmetricMode': True})
     order: IntArray = np.argsort(found.perm_c)
@@ -85,7 +96,7 @@ def _minimum_degree(touched: list[IntArray]) -> IntArray:
 
 
 def _trees(touched: list[IntArray], sequence: IntArray) -> list[_Front]:
-    """Roots of the trees of fronts; each front has joined such children as add few zeros."""
+    """Build the elimination trees and return their roots; merge children that add few zeros."""
     place = np.argsort(sequence)
     waiting: dict[int, list[_Front]] = {}
     roots = []
@@ -108,7 +119,7 @@ def _join_children(front: _Front) -> None:
         size = len(front.pivots) + len(front.border)
         zeros = [len(child.pivots) * (size - len(child.border)) for child in front.children]
         least = int(np.argmin(zeros))
-        if zeros[least] > MERGED_ZEROS:
+        if zeros[least] > MAX_MERGED_ZERO_BLOCKS:
             return
         child = front.children.pop(least)
         front.pivots[:0] = child.pivots
@@ -116,7 +127,7 @@ def _join_children(front: _Front) -> None:
 
 
 def _postordered(roots: list[_Front]) -> list[_Front]:
-    """All fronts, each after its children and right after the last of them."""
+    """Return all fronts in postorder: each right after the last of its children."""
     ordered: list[_Front] = []
     todo = list(roots)
     while todo:
@@ -141,7 +152,7 @@ def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]
             rows.append(_rows(border, firsts[parent], pivots[parent], borders[parent]))
     blocks = sequence[by_sequence]
     slots, places, entries = _assembly(pattern, blocks, owner, firsts, pivots, borders)
-    pivots, sizes = WIDTH * pivots, WIDTH * sizes
+    pivots, sizes = BLOCK * pivots, BLOCK * sizes
     edges = sizes - pivots
     factors = pivots * (sizes + edges)
     table = np.column_stack(
@@ -151,7 +162,7 @@ def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]
             [len(front.children) for front in fronts],
             np.cumsum(entries),
             np.cumsum(edges) - edges,
-            np.cumsum(edges // WIDTH) - edges // WIDTH,
+            np.cumsum(edges // BLOCK) - edges // BLOCK,
             np.cumsum(factors) - factors,
         ]
     )
@@ -161,7 +172,7 @@ def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]
         slots=slots.astype(np.uint32),
         places=places.astype(np.uint32),
         border=_unknowns(np.concatenate(borders)).astype(np.uint32),
-        parents_rows=WIDTH * np.concatenate(rows or [np.empty(0, int)]).astype(np.uint32),
+        parents_rows=BLOCK * np.concatenate(rows or [np.empty(0, int)]).astype(np.uint32),
         fill=int(factors.sum()),
         largest=int(sizes.max()),
         waiting=_most_waiting(table, edges),
@@ -169,12 +180,12 @@ def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]
 
 
 def _unknowns(blocks: IntArray) -> IntArray:
-    unknowns: IntArray = (WIDTH * blocks[:, None] + np.arange(WIDTH)).ravel()
+    unknowns: IntArray = (BLOCK * blocks[:, None] + np.arange(BLOCK)).ravel()
     return unknowns
 
 
 def _rows(blocks: IntArray, first: int, pivots: int, border: IntArray) -> IntArray:
-    """Rows of blocks in a front, in blocks."""
+    """Return the rows of blocks in a front, counted in blocks."""
     behind = pivots + np.searchsorted(border, blocks)
     return np.where(blocks < first + pivots, blocks - first, behind)
 
@@ -187,22 +198,22 @@ def _assembly(
     pivots: IntArray,
     borders: list[IntArray],
 ) -> tuple[IntArray, IntArray, IntArray]:
-    """Slots of the matrix, their places in the fronts, and how many there are in each front.
+    """Return slots of the matrix, their places in the fronts, and their number in each front.
 
     An entry belongs to the front in which the first of its row and column is a pivot.
     """
     place = np.argsort(blocks)
     columns = np.repeat(np.arange(pattern.dof), np.diff(pattern.indptr))
-    row, column = place[pattern.indices // WIDTH], place[columns // WIDTH]
+    row, column = place[pattern.indices // BLOCK], place[columns // BLOCK]
     front = owner[np.minimum(row, column)]
     slots = np.argsort(front, kind='stable')
     entries = np.bincount(front, minlength=len(borders))
     places = np.empty(len(slots), int)
     for number, chosen in enumerate(np.split(slots, np.cumsum(entries)[:-1])):
         at = firsts[number], pivots[number], borders[number]
-        down = WIDTH * _rows(row[chosen], *at) + pattern.indices[chosen] % WIDTH
-        across = WIDTH * _rows(column[chosen], *at) + columns[chosen] % WIDTH
-        places[chosen] = down * WIDTH * (pivots[number] + len(borders[number])) + across
+        down = BLOCK * _rows(row[chosen], *at) + pattern.indices[chosen] % BLOCK
+        across = BLOCK * _rows(column[chosen], *at) + columns[chosen] % BLOCK
+        places[chosen] = down * BLOCK * (pivots[number] + len(borders[number])) + across
     return slots, places[slots], entries
 
 

@@ -1,1 +1,0 @@
-"""Dense fronts of a sparse matrix: numerical factorisation and solutions, compiled."""
