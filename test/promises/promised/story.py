@@ -54,6 +54,7 @@ ENDS = {
     'trawl diagnose': 10,
     'trawl gear state kaifuha': 1,
     'trawl trim broken.yaml': 1,
+    'trawl trim mine.yaml --spread 250': 1,
     'bash secured.sh winch_node': 1,
 }
 """Exit codes that documents state, by the beginning of the command; 0 else."""
