@@ -49,7 +49,7 @@ def test_a_driver_that_never_stamps_is_no_second_source(tmp_path, received):
     found = findings(path)
     assert 'never stamps' in found['stamp']
     assert 'source' not in found
-    with pytest.raises(BagError, match='100 stamps are 0, as of a driver that never stamps'):
+    with pytest.raises(BagError, match=f'{path}: 100 stamps are 0'):
         list(SampleStream([path], '/trawl'))
 
 
@@ -59,14 +59,14 @@ def test_a_clock_set_back_by_ten_minutes_is_no_second_source(tmp_path, received)
     found = findings(path)
     assert 'set back' in found['stamp']
     assert 'source' not in found
-    with pytest.raises(BagError, match='has a clock that was set back'):
+    with pytest.raises(BagError, match=r'winch/joint_states.* set back'):
         list(SampleStream([path], '/trawl'))
 
 
 def test_a_clock_that_stands_still_is_no_second_source(tmp_path):
     path = write(tmp_path / 'bag', winch([START] * 100), received=True)
     assert 'stands still' in findings(path)['stamp']
-    with pytest.raises(BagError, match='a clock that stands still'):
+    with pytest.raises(BagError, match=r'winch/joint_states.* stands still'):
         list(SampleStream([path], '/trawl'))
 
 

@@ -53,7 +53,7 @@ def test_no_tasks_need_no_cluster() -> None:
 
 
 def test_a_fault_names_its_task(cluster: str) -> None:
-    with pytest.raises(TrawlError, match=r'(?s)^trial 7: an error of the program.*math domain'):
+    with pytest.raises(TrawlError, match=r'(?s)^trial 7: .*ValueError: math domain'):
         list(run_tasks(math.sqrt, {'trial 7': -1.0}, scheduler=cluster))
 
 
@@ -92,7 +92,7 @@ def test_keys_that_cannot_be_read_are_named(content: str | None, tmp_path: Path)
     names = ('ca-file', 'client.cert', 'client.key')
     with (
         config.set({f'distributed.comm.tls.{name}': str(file) for name in names}),
-        pytest.raises(TrawlError, match=r'keys of .* cannot be read .*key\.pem'),
+        pytest.raises(TrawlError, match=r'^tls://127\.0\.0\.1:9: .*key\.pem'),
     ):
         list(run_tasks(abs, {'first': 1}, scheduler='tls://127.0.0.1:9'))
 
