@@ -43,16 +43,17 @@ def test_an_empty_file_is_no_bag(bag_path, mcap_path):
         Bag(bag_path)
 
 
-def test_another_kind_of_file_is_no_bag(tmp_path):
-    (tmp_path / 'log.csv').write_text('time,depth\n1,2\n')
-    with pytest.raises(BagError, match=r"log\.csv: starts with b'time,dep'"):
-        Bag(tmp_path / 'log.csv')
-
-
-def test_a_garbled_database_is_named(tmp_path):
-    (tmp_path / 'x.db3').write_bytes(b'garbage' * 100)
-    with pytest.raises(BagError, match=r'x\.db3: cannot be read'):
-        Bag(tmp_path / 'x.db3')
+@pytest.mark.parametrize(
+    ('name', 'content', 'words'),
+    [
+        ('log.csv', b'time,depth\n1,2\n', r"log\.csv: starts with b'time,dep'"),
+        ('x.db3', b'garbage' * 100, r'x\.db3: cannot be read'),
+    ],
+)
+def test_another_kind_of_file_is_no_bag(tmp_path, name, content, words):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(BagError, match=words):
+        Bag(tmp_path / name)
 
 
 def test_a_bag_without_messages_gives_none_and_says_so(tmp_path, read):

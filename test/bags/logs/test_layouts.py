@@ -155,39 +155,32 @@ def test_semicolons_decimal_commas_units_comments_and_another_encoding(run):
     assert said.rows == 2
 
 
-def test_errors_name_the_line_of_the_file_not_that_of_the_table(run):
-    with pytest.raises(LogError, match=r"line 7, column 'Druck \[bar\]':.*'viel'"):
-        run(GERMAN.replace('13,6', 'viel'), GERMAN_MAPPING, encoding='cp1252')
-
-
-def test_a_point_where_commas_are_due_is_refused(run):
-    with pytest.raises(LogError, match=r"line \d+, column .*'13\.5'"):
-        run(GERMAN.replace('13,5', '13.5'), GERMAN_MAPPING, encoding='cp1252')
+@pytest.mark.parametrize(
+    ('old', 'new', 'words'),
+    [
+        ('13,6', 'viel', r"line 7, column 'Druck \[bar\]'.*'viel'"),
+        ('13,5', '13.5', r"line \d, column 'Druck \[bar\]'.*'13\.5'"),
+    ],
+    ids=['no number', 'point where commas are due'],
+)
+def test_errors_name_the_line_of_the_file_not_that_of_the_table(run, old, new, words):
+    with pytest.raises(LogError, match=words):
+        run(GERMAN.replace(old, new), GERMAN_MAPPING, encoding='cp1252')
 
 
 @pytest.mark.parametrize(
-    ('separator', 'log'),
+    ('layout', 'log', 'encoding'),
     [
-        ('tab', 't\tp\n1785609531\t13.5\n'),
-        ('blanks', '  t     p\n1785609531   13.5\n'),
-        ("'|'", 't|p\n1785609531|13.5\n'),
+        ('separator: tab', 't\tp\n1785609531\t13.5\n', 'utf-8'),
+        ('separator: blanks', '  t     p\n1785609531   13.5\n', 'utf-8'),
+        ("separator: '|'", 't|p\n1785609531|13.5\n', 'utf-8'),
+        ('names: [t, x, p]', '1785609531,7,13.5\n', 'utf-8'),
+        ('encoding: utf-16', 't,p\r\n1785609531,13.5\r\n', 'utf-16'),
     ],
 )
-def test_separators(run, separator, log):
-    mapping = f'clock: {{columns: [t], format: seconds}}\nlayout: {{separator: {separator}}}\n'
-    _, found = run(log, mapping + PRESSURE)
-    assert stamps(found) == [AT]
-
-
-def test_a_file_without_column_names_gets_them_from_the_mapping(run):
-    mapping = 'clock: {columns: [t], format: seconds}\nlayout: {names: [t, x, p]}\n'
-    _, found = run('1785609531,7,13.5\n', mapping + PRESSURE)
-    assert stamps(found) == [AT]
-
-
-def test_windows_files_in_utf_16(run):
-    mapping = 'clock: {columns: [t], format: seconds}\nlayout: {encoding: utf-16}\n'
-    _, found = run('t,p\r\n1785609531,13.5\r\n', mapping + PRESSURE, encoding='utf-16')
+def test_separators_names_and_encodings_are_as_the_mapping_says(run, layout, log, encoding):
+    mapping = f'clock: {{columns: [t], format: seconds}}\nlayout: {{{layout}}}\n'
+    _, found = run(log, mapping + PRESSURE, encoding=encoding)
     assert stamps(found) == [AT]
 
 
