@@ -44,12 +44,9 @@ def pressure_channel(entries, topic=PRESSURE):
     return topic, name, 'ros2msg', message_definition(name), entries
 
 
-def test_a_sound_bag_comes_back_message_for_message(sound_bag, messages, raw):
-    assert raw(sound_bag) == (messages, [])
-
-
-def test_the_mcap_file_alone_comes_back_too(sound_bag, messages, raw):
-    assert raw(sound_bag / 'trial_0.mcap') == (messages, [])
+@pytest.mark.parametrize('file', ['', 'trial_0.mcap'])
+def test_a_sound_bag_comes_back_message_for_message(sound_bag, messages, raw, file):
+    assert raw(sound_bag / file) == (messages, [])
 
 
 def test_messages_are_decoded(sound_bag, read):

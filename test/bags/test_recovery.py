@@ -5,6 +5,8 @@ import shutil
 
 import pytest
 from mcap.reader import make_reader
+from mcap.records import Chunk, Message
+from mcap.stream_reader import StreamReader, breakup_chunk
 
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import repair_bag
@@ -20,6 +22,13 @@ def chunks(path):
     with path.open('rb') as stream:
         found = make_reader(stream).get_summary().chunk_indexes
     return [(index.chunk_start_offset, index.chunk_length) for index in found]
+
+
+def messages_of_first_chunk(path):
+    with path.open('rb') as stream:
+        records = StreamReader(stream, emit_chunks=True).records
+        first = next(record for record in records if isinstance(record, Chunk))
+        return sum(isinstance(record, Message) for record in breakup_chunk(first))
 
 
 def summary_start(whole):
@@ -131,9 +140,10 @@ def test_of_the_sample_all_but_the_damaged_chunk_is_saved(tmp_path, monkeypatch,
     else:
         write_as_0_1_0(Bag(sample), bag, monkeypatch)
     file = bag / 'sea_trial_0.mcap'
+    lost = messages_of_first_chunk(file)
     spoil(file, (5000, 1), (file.stat().st_size - 3000, 1), flip=1)
     done = repair_bag(bag)
-    assert sum(done.saved.values()) == 121_693
-    assert sum(done.lost.values()) == 129_113 - 121_693
+    assert sum(done.lost.values()) == lost > 0
+    assert sum(done.saved.values()) == sum(1 for _ in Bag(sample).as_stored()) - lost
     assumed = any('confirms' in problem for problem in done.problems)
     assert assumed == (described != 'again and again')
