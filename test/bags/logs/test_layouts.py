@@ -161,7 +161,7 @@ def test_semicolons_decimal_commas_units_comments_and_another_encoding(run):
         ('13,6', 'viel', r"line 7, column 'Druck \[bar\]'.*'viel'"),
         ('13,5', '13.5', r"line \d, column 'Druck \[bar\]'.*'13\.5'"),
     ],
-    ids=['no number', 'point where commas are due'],
+    ids=['no number', 'a point'],
 )
 def test_errors_name_the_line_of_the_file_not_that_of_the_table(run, old, new, words):
     with pytest.raises(LogError, match=words):

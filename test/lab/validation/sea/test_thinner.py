@@ -31,7 +31,7 @@ def test_the_net_has_so_much_less_twine_and_all_of_it_from_small_meshes(off: flo
 @pytest.mark.parametrize(
     ('gear', 'area_off', 'words'),
     [('krill_1420', 0.5, r'thinner.* 0\.185'), ('kaifuha', 0.1, 'thinner: .*plan')],
-    ids=['more twine than there is', 'a net without a plan'],
+    ids=['too much twine', 'no plan'],
 )
 def test_what_cannot_be_taken_off_is_refused(gear: str, area_off: float, words: str) -> None:
     with pytest.raises(TrawlError, match=f'{gear}: {words}'):
