@@ -12,6 +12,7 @@ from trawl_ros.estimation.fit.error_terms import Scheme
 from trawl_ros.estimation.fit.estimate import posterior_of, undetermined
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.line_search import NO_STEADY_STATE
 from trawl_ros.estimation.fit.linearised import linearise
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.records.channels import CHANNELS, INPUTS
@@ -241,7 +242,7 @@ def test_where_the_answer_lies_beyond_the_steady_states_it_says_so(sea, prior):
         sea, model, ParameterVector(start, prior.std, prior.low, prior.high), windows
     )
     assert not estimate.converged
-    assert 'steady state' in estimate.reason
+    assert NO_STEADY_STATE in estimate.reason
 
 
 class Picky:
