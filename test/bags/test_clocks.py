@@ -43,30 +43,22 @@ ticks = [START + number * SECOND for number in range(1500)]
 SET_BACK = [*ticks[:900], *ticks[300:900]]
 
 
-@pytest.mark.parametrize('received', [True, False])
-def test_a_driver_that_never_stamps_is_no_second_source(tmp_path, received):
-    path = write(tmp_path / 'bag', winch([0] * 100), received=received)
+@pytest.mark.parametrize(
+    ('stamps', 'received', 'said', 'refused'),
+    [
+        ([0] * 100, True, 'never stamps', ': 100 stamps are 0'),
+        ([0] * 100, False, 'never stamps', ': 100 stamps are 0'),
+        (SET_BACK, True, 'set back', 'winch/joint_states.* set back'),
+        (SET_BACK, False, 'set back', 'winch/joint_states.* set back'),
+        ([START] * 100, True, 'stands still', 'winch/joint_states.* stands still'),
+    ],
+)
+def test_a_clock_that_tells_no_time_is_no_second_source(tmp_path, stamps, received, said, refused):
+    path = write(tmp_path / 'bag', winch(stamps), received=received)
     found = findings(path)
-    assert 'never stamps' in found['stamp']
+    assert said in found['stamp']
     assert 'source' not in found
-    with pytest.raises(BagError, match='100 stamps are 0, as of a driver that never stamps'):
-        list(SampleStream([path], '/trawl'))
-
-
-@pytest.mark.parametrize('received', [True, False])
-def test_a_clock_set_back_by_ten_minutes_is_no_second_source(tmp_path, received):
-    path = write(tmp_path / 'bag', winch(SET_BACK), received=received)
-    found = findings(path)
-    assert 'set back' in found['stamp']
-    assert 'source' not in found
-    with pytest.raises(BagError, match='has a clock that was set back'):
-        list(SampleStream([path], '/trawl'))
-
-
-def test_a_clock_that_stands_still_is_no_second_source(tmp_path):
-    path = write(tmp_path / 'bag', winch([START] * 100), received=True)
-    assert 'stands still' in findings(path)['stamp']
-    with pytest.raises(BagError, match='a clock that stands still'):
+    with pytest.raises(BagError, match=f'{path}.*{refused}'):
         list(SampleStream([path], '/trawl'))
 
 

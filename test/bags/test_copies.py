@@ -7,6 +7,8 @@ from trawl_ros.bags.check import check_bag
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import repair_bag
 
+COPY = 'copy of the one'
+
 
 @pytest.fixture
 def doubled(bag_path, mcap_path):
@@ -22,14 +24,14 @@ def doubled(bag_path, mcap_path):
 def test_it_is_read_once(doubled, messages, raw):
     found, problems = raw(doubled)
     assert found == messages
-    assert 'is a copy of the one at byte' in ' '.join(problems)
-    assert 'messages could be read' not in ' '.join(problems)
+    assert COPY in ' '.join(problems)
+    assert 'messages could' not in ' '.join(problems)
 
 
 def test_a_check_finds_it(doubled):
     done = check_bag(doubled)
     assert done.count == 600
-    assert any('is a copy of the one at byte' in finding.text for finding in done.findings)
+    assert any(COPY in finding.text for finding in done.findings)
     assert 'order' not in {finding.kind for finding in done.findings}
 
 

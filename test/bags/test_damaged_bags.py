@@ -28,31 +28,32 @@ def flip_byte(path, place):
 
 
 def test_a_missing_bag_is_named(tmp_path):
-    with pytest.raises(BagError, match='nowhere: no such bag'):
+    with pytest.raises(BagError, match='nowhere: '):
         Bag(tmp_path / 'nowhere')
 
 
 def test_an_empty_folder_is_no_bag(tmp_path):
-    with pytest.raises(BagError, match=r'neither metadata\.yaml nor an \.mcap file'):
+    with pytest.raises(BagError, match=rf'{tmp_path}.*metadata\.yaml.*\.mcap'):
         Bag(tmp_path)
 
 
 def test_an_empty_file_is_no_bag(bag_path, mcap_path):
     mcap_path.write_bytes(b'')
-    with pytest.raises(BagError, match=r'trial_0\.mcap: the file is empty'):
+    with pytest.raises(BagError, match=r'trial_0\.mcap: .*empty'):
         Bag(bag_path)
 
 
-def test_another_kind_of_file_is_no_bag(tmp_path):
-    (tmp_path / 'log.csv').write_text('time,depth\n1,2\n')
-    with pytest.raises(BagError, match=r"log\.csv: starts with b'time,dep'"):
-        Bag(tmp_path / 'log.csv')
-
-
-def test_a_garbled_database_is_named(tmp_path):
-    (tmp_path / 'x.db3').write_bytes(b'garbage' * 100)
-    with pytest.raises(BagError, match=r'x\.db3: cannot be read'):
-        Bag(tmp_path / 'x.db3')
+@pytest.mark.parametrize(
+    ('name', 'content', 'words'),
+    [
+        ('log.csv', b'time,depth\n1,2\n', r"log\.csv: starts with b'time,dep'"),
+        ('x.db3', b'garbage' * 100, r'x\.db3: cannot be read'),
+    ],
+)
+def test_another_kind_of_file_is_no_bag(tmp_path, name, content, words):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(BagError, match=words):
+        Bag(tmp_path / name)
 
 
 def test_a_bag_without_messages_gives_none_and_says_so(tmp_path, read):
@@ -64,7 +65,7 @@ def test_a_bag_without_messages_gives_none_and_says_so(tmp_path, read):
 
 def test_a_bag_without_its_file_names_it(bag_path, mcap_path):
     mcap_path.unlink()
-    with pytest.raises(BagError, match=r'names trial_0\.mcap, which is not there'):
+    with pytest.raises(BagError, match=r'names trial_0\.mcap'):
         Bag(bag_path)
 
 
@@ -92,7 +93,7 @@ def test_metadata_that_are_none_are_refused(bag_path, text, words):
 @pytest.mark.parametrize(
     ('change', 'words'),
     [
-        (lambda topic: topic.update(message_count=299), 'states 299 messages .* the data has 300'),
+        (lambda topic: topic.update(message_count=299), '299 messages .* 300'),
         (lambda topic: topic['topic_metadata'].update(name='/other'), 'messages of .* on /other'),
         (lambda topic: topic['topic_metadata'].update(type='std_msgs/msg/Bool'), 'JointState'),
     ],
@@ -128,7 +129,7 @@ def test_a_file_cut_short_says_how_much_is_missing(bag_path, mcap_path, read):
     mcap_path.write_bytes(whole[: len(whole) // 2])
     received, problems = read(bag_path)
     assert 0 < len(received) < 600
-    assert f'{len(received)} of 600 messages could be read' in problems[-1]
+    assert f'{len(received)} of 600 messages' in problems[-1]
 
 
 def test_a_recording_that_was_killed_says_what_it_has_more_than_it_counted(
@@ -142,7 +143,8 @@ def test_a_recording_that_was_killed_says_what_it_has_more_than_it_counted(
     path.write_text(yaml.safe_dump(data))
     found, problems = raw(bag_path)
     assert found == messages[:480]
-    assert '480 messages could be read, 120 more than were counted' in problems[-1]
+    assert '480 messages' in problems[-1]
+    assert '120 more' in problems[-1]
 
 
 def test_no_flipped_byte_passes_or_crashes(bag_path, mcap_path, messages, raw):

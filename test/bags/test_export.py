@@ -121,7 +121,8 @@ def test_arrays_beyond_the_limit_are_left_out_as_a_whole_and_said(tmp_path):
     messages = [('truth/net/mouth', polygon(count)) for count in (3, 5, 2)]
     topics, _ = exported(tmp_path, *messages, array_limit=4)
     done = topics['truth/net/mouth']
-    assert done.left_out == {'polygon.points': 'has 5 elements, more than 4'}
+    assert set(done.left_out) == {'polygon.points'}
+    assert '5 elements' in done.left_out['polygon.points']
     assert list(rows(done.file)[0]) == [
         'log_time_s',
         'log_time_ns',
@@ -144,7 +145,8 @@ def test_images_are_left_out_and_said(tmp_path):
     )
     topics, _ = exported(tmp_path, ('sonar/image', image))
     done = topics['sonar/image']
-    assert done.left_out == {'data': 'is an image or another blob of bytes'}
+    assert set(done.left_out) == {'data'}
+    assert 'image' in done.left_out['data']
     assert rows(done.file)[0]['width'] == '3'
 
 
@@ -163,13 +165,13 @@ def test_a_topic_of_which_nothing_is_left_gets_no_file(tmp_path):
     )
     topics, _ = exported(tmp_path, outline, other, array_limit=8)
     assert topics['/lab/outline'].file is None
-    assert topics['/lab/outline'].left_out == {'points': 'has 9 elements, more than 8'}
+    assert set(topics['/lab/outline'].left_out) == {'points'}
     files = sorted(file.name for file in (tmp_path / 'out').iterdir())
     assert files == [DICTIONARY, 'lab.count.csv']
 
 
 def test_an_export_that_would_write_nothing_is_an_error_that_says_why(tmp_path):
-    with pytest.raises(BagError, match='points of /lab/outline has 9 elements, more than 8'):
+    with pytest.raises(BagError, match=r'points of /lab/outline .*9 elements'):
         exported(tmp_path, ('/lab/outline', polygon(9).polygon), array_limit=8)
     assert not (tmp_path / 'out').exists()
 
@@ -182,9 +184,7 @@ def test_a_topic_whose_definition_is_not_understood_is_said(tmp_path, messages):
         schema = writer.register_schema('lab_msgs/msg/Thing', 'ros2msg', b'no such field')
         writer.add_message(writer.register_channel('/lab/thing', 'cdr', schema), 1, b'1234', 1)
         writer.finish()
-    with pytest.raises(
-        BagError, match=r'no row of a table .*Thing in the bag cannot be understood'
-    ):
+    with pytest.raises(BagError, match=r'lab_msgs/msg/Thing'):
         export_bag(path, tmp_path / 'out')
 
 
@@ -192,14 +192,14 @@ def test_topics_can_be_picked_by_either_name(sound_bag, tmp_path):
     for number, name in enumerate(('winch/joint_states', '/trawl/winch/joint_states')):
         done = export_bag(sound_bag, tmp_path / str(number), topics=[name])
         assert [topic.topic for topic in done.topics] == ['/trawl/winch/joint_states']
-    with pytest.raises(BagError, match='no topic /trawl/winch; expected some of /trawl/door'):
+    with pytest.raises(BagError, match=r'no topic /trawl/winch; .*/trawl/door'):
         export_bag(sound_bag, tmp_path / 'x', topics=['winch'])
     assert not (tmp_path / 'x').exists()
 
 
 def test_nothing_is_written_over(sound_bag, tmp_path):
     (tmp_path / 'out').mkdir()
-    with pytest.raises(BagError, match='exists already and is not written over'):
+    with pytest.raises(BagError, match=f'{tmp_path / "out"}.*exists already'):
         export_bag(sound_bag, tmp_path / 'out')
 
 

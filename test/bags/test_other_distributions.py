@@ -290,10 +290,10 @@ def test_metadata_that_disagree_with_a_database_are_refused(tmp_path):
     with closing(sqlite3.connect(path / 'bag_0.db3')) as database:
         database.execute('DELETE FROM messages WHERE id = 3')
         database.commit()
-    with pytest.raises(BagError, match=r'states 5 messages .* the data has 4'):
+    with pytest.raises(BagError, match=r'5 messages .* 4'):
         Bag(path)
     (finding,) = check_bag(path).findings
-    assert 'states 5 messages of sensor_msgs/msg/Range' in finding.text
+    assert '5 messages of sensor_msgs/msg/Range' in finding.text
 
 
 def test_what_a_killed_recorder_left_in_the_log_beside_the_database_is_read(tmp_path):
@@ -343,7 +343,7 @@ def test_a_damaged_page_of_a_database_is_said(tmp_path):
 def test_another_database_is_no_bag(tmp_path):
     with closing(sqlite3.connect(tmp_path / 'x.db3')) as database:
         database.execute('CREATE TABLE fish(name TEXT)')
-    with pytest.raises(BagError, match='without table messages and topics'):
+    with pytest.raises(BagError, match=r'x\.db3.*messages and topics'):
         Bag(tmp_path / 'x.db3')
 
 

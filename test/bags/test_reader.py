@@ -44,12 +44,9 @@ def pressure_channel(entries, topic=PRESSURE):
     return topic, name, 'ros2msg', message_definition(name), entries
 
 
-def test_a_sound_bag_comes_back_message_for_message(sound_bag, messages, raw):
-    assert raw(sound_bag) == (messages, [])
-
-
-def test_the_mcap_file_alone_comes_back_too(sound_bag, messages, raw):
-    assert raw(sound_bag / 'trial_0.mcap') == (messages, [])
+@pytest.mark.parametrize('file', ['', 'trial_0.mcap'])
+def test_a_sound_bag_comes_back_message_for_message(sound_bag, messages, raw, file):
+    assert raw(sound_bag / file) == (messages, [])
 
 
 def test_messages_are_decoded(sound_bag, read):
@@ -184,7 +181,7 @@ def test_single_messages_can_be_decoded_and_say_when_they_are_none(tmp_path):
     bag = Bag(write_mcap(tmp_path / 'x.mcap', pressure_channel(entries)))
     good, bad = bag.raw()
     assert bag.decode(good).fluid_pressure == 2e5
-    with pytest.raises(MessageError, match=f'{PRESSURE}: 10 bytes are not a sensor_msgs'):
+    with pytest.raises(MessageError, match=f'{PRESSURE}: 10 bytes .*sensor_msgs/msg/FluidPressure'):
         bag.decode(bad)
 
 
@@ -211,7 +208,7 @@ def test_a_path_in_metadata_cannot_lead_out_of_the_bag(bag_path, mcap_path):
     path = bag_path / 'metadata.yaml'
     path.write_text(path.read_text().replace('- trial_0.mcap', '- ../elsewhere.mcap'))
     assert Path(elsewhere).exists()
-    with pytest.raises(BagError, match=r'names elsewhere\.mcap, which is not there'):
+    with pytest.raises(BagError, match=r'names elsewhere\.mcap'):
         Bag(bag_path)
 
 
@@ -220,5 +217,5 @@ def test_a_record_that_claims_an_absurd_length_takes_no_memory(tmp_path, read):
     whole = write_mcap(path, pressure_channel([(0, pressure_bytes())])).read_bytes()
     (header,) = struct.unpack_from('<Q', whole, 9)
     path.write_bytes(whole[: 8 + 9 + header] + b'\x06' + struct.pack('<Q', 1 << 60) + bytes(100))
-    with pytest.raises(BagError, match='cut short or damaged at byte'):
+    with pytest.raises(BagError, match=r'x\.mcap.*damaged at byte \d'):
         read(path)

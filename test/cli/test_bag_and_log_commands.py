@@ -29,7 +29,8 @@ def test_info_counts_messages_and_says_what_is_damaged(run, steady_tow, tmp_path
     words = next(line for line in done.stdout.splitlines() if '/trawl/door/spread' in line).split()
     assert words[:2] == ['40', '1']
     assert words[4:] == ['sensor_msgs/msg/Range', 'reliable,', 'volatile,', 'last', '100']
-    assert 'storage mcap, metadata version 8, ROS jazzy, zstd per chunk' in done.stdout
+    for part in ('storage mcap', 'version 8', 'ROS jazzy', 'zstd'):
+        assert part in done.stdout
     assert done.stderr == ''
     whole = (bag / 'bag_0.mcap').read_bytes()
     cut = tmp_path / 'cut.mcap'

@@ -156,7 +156,7 @@ def test_without_one_steady_window_all_of_the_tow_is_learned_from_and_that_is_to
     assert found['motion']['tows'] == [str(restless_bag)]
     assert found['net'] == found['motion']['net']
     assert 0.0 < found['net']['drag']['std'] < NET_STD
-    assert done.stdout.count('Drag of the net: ') == 1
+    assert done.stdout.count('Drag of the net:') == 1
 
 
 @pytest.mark.parametrize('option', ['--steady', '--no-prior'])

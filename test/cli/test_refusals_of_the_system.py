@@ -1,6 +1,7 @@
 """What the system refuses ends a command with one sentence, and with no traceback."""
 
-import re
+import errno
+import os
 import subprocess
 import sys
 import time
@@ -27,7 +28,7 @@ def run(*arguments: object, folder: Path, stdout: str = '/dev/null') -> tuple[in
 @pytest.mark.parametrize('arguments', [['--help'], ['scenarios'], ['effects']])
 def test_a_full_disk_behind_the_standard_output(arguments: list[str], tmp_path: Path) -> None:
     code, said = run(*arguments, folder=tmp_path, stdout='/dev/full')
-    assert (code, said) == (1, 'Error: No space left on device\n')
+    assert (code, said) == (1, f'Error: {os.strerror(errno.ENOSPC)}\n')
 
 
 @pytest.mark.parametrize(
@@ -52,7 +53,6 @@ def test_a_folder_that_cannot_be_written_is_told_before_the_work(words, place, t
     assert time.monotonic() - began < 20.0
     assert done.exit_code in (1, 2), done.output
     assert out in done.stderr
-    assert re.search(r'cannot be (written|used)|is a file|exists already', done.stderr)
     assert sorted(tmp_path.rglob('*')) == before
     assert (tmp_path / 'file').read_text() == 'mine'
 

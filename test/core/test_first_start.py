@@ -2,6 +2,7 @@
 
 import logging
 import os
+import re
 import threading
 from pathlib import Path
 
@@ -108,7 +109,7 @@ def test_a_long_compilation_says_why_and_how_far_it_is(caplog):
     first, *others = [record.getMessage() for record in caplog.records]
     assert 'at each start' in first
     assert len(others) == 2
-    assert others[-1] == 'compiled 11 loops in 11 s'
+    assert re.findall(r'\d+', others[-1]) == ['11', '11']
 
 
 def test_a_short_compilation_says_nothing(caplog):

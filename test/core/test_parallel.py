@@ -53,7 +53,7 @@ def test_no_tasks_need_no_cluster() -> None:
 
 
 def test_a_fault_names_its_task(cluster: str) -> None:
-    with pytest.raises(TrawlError, match=r'(?s)^trial 7: an error of the program.*math domain'):
+    with pytest.raises(TrawlError, match=r'(?s)^trial 7: .*ValueError: math domain'):
         list(run_tasks(math.sqrt, {'trial 7': -1.0}, scheduler=cluster))
 
 
@@ -68,15 +68,10 @@ def test_processes_that_do_not_start_in_time_are_told(monkeypatch: pytest.Monkey
         list(run_tasks(abs, {'one': 1}, workers=1))
 
 
-def test_an_address_without_a_scheduler_is_refused() -> None:
-    with pytest.raises(TrawlError, match='no Dask scheduler'):
-        list(run_tasks(abs, {'first': 1}, scheduler='tcp://127.0.0.1:9', scheduler_timeout_s=0.2))
-
-
-@pytest.mark.parametrize('address', ['foo', 'file:///etc/passwd'])
-def test_an_address_that_is_none_is_refused_at_once(address: str) -> None:
-    with pytest.raises(TrawlError, match='no Dask scheduler'):
-        list(run_tasks(abs, {'first': 1}, scheduler=address))
+@pytest.mark.parametrize('address', ['tcp://127.0.0.1:9', 'foo', 'file:///etc/passwd'])
+def test_an_address_without_a_scheduler_is_refused(address: str) -> None:
+    with pytest.raises(TrawlError, match=f'{address}: no Dask scheduler'):
+        list(run_tasks(abs, {'first': 1}, scheduler=address, scheduler_timeout_s=0.2))
 
 
 def test_tls_without_keys_says_which_are_missing() -> None:
@@ -92,7 +87,7 @@ def test_keys_that_cannot_be_read_are_named(content: str | None, tmp_path: Path)
     names = ('ca-file', 'client.cert', 'client.key')
     with (
         config.set({f'distributed.comm.tls.{name}': str(file) for name in names}),
-        pytest.raises(TrawlError, match=r'keys of .* cannot be read .*key\.pem'),
+        pytest.raises(TrawlError, match=r'^tls://127\.0\.0\.1:9: .*key\.pem'),
     ):
         list(run_tasks(abs, {'first': 1}, scheduler='tls://127.0.0.1:9'))
 

@@ -1,6 +1,7 @@
 """What is hidden in a trial is found, named, added to the gear, and the gap shrinks."""
 
 import json
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -86,7 +87,7 @@ def test_a_sensor_that_jumps_is_seen_to_do_so(coarse, clean):
     )
     found, *_ = changes(replace(clean.score_test, fit=replace(clean.score_test.fit, windows=parts)))
     assert (found.channel, found.variable) == ('net_depth', 'time')
-    assert found.region == 'jumps up in tow 3 after 1.0 h'
+    assert re.findall(r'up|\d\S*', found.region) == ['up', '3', '1.0']
     assert found.z > 5.0
 
 
@@ -190,7 +191,7 @@ def test_what_does_not_vary_tells_nothing(coarse, hide):
 
 def test_recordings_without_a_window_tell_nothing(coarse, tmp_path):
     found = unread(coarse, ['bag'], 'bag: no readings')
-    assert headline(found) == 'Nothing can be said: bag: no readings.'
+    assert headline(found).endswith('bag: no readings.')
     assert sentences(found) == ()
     write_diagnosis(found, [], tmp_path)
     assert not (tmp_path / 'model.yaml').exists()
@@ -218,7 +219,7 @@ def test_the_next_tow_tells_an_effect_from_its_rival(coarse, caught):
     assert first.after > first.before > 0.0
     assert first.per_hour == pytest.approx(first.after - first.before)
     assert all(first.per_hour >= other.per_hour for other in proposals)
-    assert 'the best effect from its nearest rival (χ² ' in str(first)
+    assert 'nearest rival (χ² ' in str(first)
     assert propose(predictor, seen, best, np.array([2.0]), []) == ()
 
 

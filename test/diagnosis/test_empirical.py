@@ -43,10 +43,10 @@ def test_it_is_unknown_and_the_term_is_called_empirical(found):
     assert found.verdict == 'UNKNOWN', found.reason
     assert found.empirical.term.name.startswith('empirical_port_door_depth')
     assert found.empirical.weighed.delta_chi2 > found.empirical.placebo
-    assert 'no effect of the catalogue explains it' in headline(found)
+    assert 'no effect' in headline(found)
     (said,) = [sentence for sentence in sentences(found) if 'Empirical' in sentence]
     assert 'not a cause' in said
-    assert 'a sensor of port door depth' in said
+    assert 'port door depth' in said
 
 
 @pytest.mark.slow

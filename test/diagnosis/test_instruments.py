@@ -1,5 +1,6 @@
 """Faults of instruments that need no effect to be seen."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -43,7 +44,7 @@ def test_a_log_over_ground_is_told_tow_by_tow(coarse, hide):
         for window in windows
     ]
     (said,) = over_ground(copied, ['first', 'second'])
-    assert said.startswith('second: speed (vessel/velocity_water) is speed over ground')
+    assert said.startswith('second: speed (vessel/velocity_water) ')
     assert over_ground(windows, ['first', 'second']) == ()
     found = diagnose_windows(coarse, copied[:2], ['first', 'second'])
     assert found.verdict == 'NOT_TESTABLE'
@@ -58,9 +59,9 @@ def test_a_state_in_which_a_board_lies_over_is_left_out_and_told(coarse, hide):
     folded = [replace(windows[0], means=closed), *windows[1:]]
     kept, (said,) = standing(folded, ['first', 'second'])
     assert kept == tuple(windows[1:])
-    assert said.startswith('first: the doors were 6 m apart')
+    assert re.match(r'first: .* 6 m ', said)
     (remark,) = diagnose_windows(coarse, folded[:2], ['first', 'second']).remarks
-    assert 'a board had fallen over, and this state is left out' in remark
+    assert 'fallen over' in remark
     # Without a sensor of the spread nothing is known.
     blind = [
         replace(window, means={k: v for k, v in window.means.items() if k != 'door_spread'})
@@ -86,9 +87,7 @@ def test_a_sensor_that_is_frozen_at_a_plausible_value_is_told(coarse, hide):
         for window in windows
     ]
     (found,) = frozen(stuck, ['first', 'second'])
-    assert found.sentence.startswith(
-        'second: net depth (sonar/pressure) stays at 120 m from 300 to 803'
-    )
+    assert re.match(r'second: .*\(sonar/pressure\).* 120 m .*300 to 803', found.sentence)
     left = without(stuck, [found])
     assert [window.tow for window in left if 'net_depth' in window.means] == [0] * 5
     assert without(stuck, []) == tuple(stuck)
@@ -101,9 +100,9 @@ def test_a_sensor_that_is_frozen_at_a_plausible_value_is_told(coarse, hide):
     )  # fmt: skip
     value = effect['parameters']['value']
     assert value['low'] < 120.0 < value['high']
-    assert 'A sensor is frozen (net depth in tow 2, 120 m throughout)' in headline(said)
+    assert '(net depth in tow 2, 120 m' in headline(said)
     assert 'the other readings' in headline(said)
-    assert what_to_do(said).startswith('Frozen sensor: a blocked port')
+    assert what_to_do(said).startswith('Frozen sensor: ')
     assert said.remarks == (found.sentence,)
     assert frozen(stuck[:6], ['first', 'second']) == ()
 
@@ -114,9 +113,7 @@ def test_what_the_echo_sounder_rules_out_is_not_looked_for(coarse, hide):
     over = [replace(window, seabed=400.0) for window in windows]
     there, (said,) = possible(catalogue(), over)
     assert set(catalogue()) - set(there) == {'bottom_contact'}
-    assert said.startswith(
-        'Bottom contact is not looked for: the echo sounder shows 400 m at least'
-    )
+    assert re.match(r'Bottom contact .* 400 m', said)
     # One tow in which she was near the bottom is enough for it to be asked.
     lowest = max(window.means['net_depth'] for window in windows)
     near = [replace(window, seabed=lowest + 50.0) for window in windows]

@@ -1,5 +1,6 @@
 """A name is held against changes of the gear file: other boards are not taken for other rigging."""
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -62,8 +63,8 @@ def test_larger_boards_make_a_name_doubtful_and_are_told_with_their_size(exchang
     value, low, high = found['board_area'].interval
     assert low < LARGER < high
     assert low < value < high
-    assert f'larger boards, by about {100.0 * value:.2g} %' in headline(exchanged)
-    assert 'Hold board.area_m2 of the gear file' in what_to_do(exchanged)
+    assert re.search(f'larger boards.* {100.0 * value:.2g} %', headline(exchanged))
+    assert 'board.area_m2' in what_to_do(exchanged)
     listed = result(exchanged, ())['mimics']
     assert [own['name'] for own in listed] == [own.change.name for own in exchanged.mimics]
     assert exchanged.repair is None

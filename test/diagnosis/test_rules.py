@@ -55,7 +55,7 @@ def test_a_change_of_the_gear_file_that_explains_as_much_makes_a_name_doubtful()
     mimics = {'larger boards, by about 11 %': -1.0, 'thicker warps, by about 25 %': -5.0}
     verdict, reason = judge_beside(*judge(SOUND), mimics)
     assert verdict == 'AMBIGUOUS'
-    assert 'larger boards, by about 11 %; or thicker warps' in reason
+    assert '; or '.join(mimics) in reason
     assert 'it alone' not in reason
     assert judge_beside(*judge(SOUND), {}) == judge(SOUND)
 
@@ -64,8 +64,8 @@ def test_it_is_told_too_where_a_name_is_doubtful_already():
     doubtful = judge(replace(SOUND, rivals=('heave',)))
     verdict, reason = judge_beside(*doubtful, {'thicker warps, by about 25 %': 9.0})
     assert verdict == 'AMBIGUOUS'
-    assert reason.startswith('heave would explain it')
-    assert 'and it may as well be' in reason
+    assert reason.startswith(doubtful[1])
+    assert 'thicker warps, by about 25 %' in reason.removeprefix(doubtful[1])
     assert judge_beside(*doubtful, {}) == doubtful
 
 
@@ -73,12 +73,12 @@ def test_what_explains_it_far_better_and_is_in_no_catalogue_leaves_no_name():
     mimics = {'readings of door spread that drift by about 3 m per h': 30.0, 'larger boards': 2.0}
     verdict, reason = judge_beside(*judge(SOUND), mimics)
     assert verdict == 'UNKNOWN'
-    assert reason.endswith(
-        'explains it better: readings of door spread that drift by about 3 m per h'
-    )
+    assert reason.endswith(f': {next(iter(mimics))}')
+    assert 'larger boards' not in reason
 
 
 def test_an_effect_with_a_form_that_explains_more_is_told_with_it_and_not_named():
-    verdict, reason = judge_form('thinner twine, by about 6 %')
+    form = 'thinner twine, by about 6 %'
+    verdict, reason = judge_form(form)
     assert verdict == 'AMBIGUOUS'
-    assert reason.endswith('explains more: thinner twine, by about 6 %')
+    assert reason.endswith(f': {form}')

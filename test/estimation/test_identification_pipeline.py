@@ -95,7 +95,7 @@ def test_it_says_which_channels_it_lacks_and_that_it_does_not_estimate(sea, mode
             identification.feed(sample)
     assert identification.missing_channels() == ('port_length', 'starboard_length', 'door_spread')
     sentence = identification.why_not()
-    assert sentence.startswith('nothing is estimated: no readings on door/spread; none usable of ')
+    assert sentence.split(';')[0].endswith(' door/spread')
     assert sentence.endswith(' of starboard_length')
     with pytest.raises(TrawlError, match='door/spread'):
         report(identification)

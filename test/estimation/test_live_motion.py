@@ -101,15 +101,15 @@ def test_the_order_in_which_topics_arrive_changes_nothing_nor_what_was_before_a_
     live = LiveMotion(record, QUICK())
     updates(live, still[:2000])
     live.reset()
-    assert live.why_not == 'the tow has just begun'
+    assert live.why_not == LiveMotion(record, QUICK()).why_not
     same(updates(live, sorted(still, key=arrival)), learned)
 
 
 def test_a_tow_that_has_just_begun_says_what_it_needs(record, still):
     live = LiveMotion(record)
     assert not updates(live, still[: len(still) // 3])
-    assert 'expected at least 600 s' in live.why_not
-    with pytest.raises(TrawlError, match='expected at least 600 s'):
+    assert '600 s' in live.why_not
+    with pytest.raises(TrawlError, match='600 s'):
         live.finish(None)
 
 
@@ -122,7 +122,7 @@ def test_of_a_tow_that_is_too_long_the_beginning_is_learned_from(record, still, 
     taken = [live.record(sample) for sample in still]
     assert 620 < sum(taken) / len(taken) * 60 * MINUTES < 630
     assert live.refusal() == ''
-    assert 'which is the most' in live.why_not
+    assert 'the most' in live.why_not
 
 
 MOVING = """\

@@ -50,7 +50,7 @@ def test_a_recording_that_is_given_twice_is_refused(sea, trials):
     found = [find(sea, samples, name) for samples, name in zip(trials, 'ab', strict=True)]
     empty = FoundWindows('none', (), {}, {}, Rejections(), 'no windows', ())
     require_distinct([*found, empty, empty])
-    with pytest.raises(TrawlError, match=r'a and a copy hold the same .* expected each tow once'):
+    with pytest.raises(TrawlError, match=r'^a and a copy '):
         require_distinct([*found, replace(found[0], name='a copy')])
 
 

@@ -76,13 +76,11 @@ def test_an_empty_codend_is_built_as_without_the_key(gear: GearRecord) -> None:
 
 
 def test_a_catch_that_the_codend_cannot_hold_is_refused(gear: GearRecord) -> None:
-    with pytest.raises(GearError, match=r'catch\.mass_kg: found 900000 kg, which fill [\d.]+ m'):
+    with pytest.raises(GearError, match=r'catch\.mass_kg: found 900000 kg'):
         build_model(with_catch(gear, mass_kg=9e5))
     with pytest.raises(ValidationError, match='mass_kg'):
         CatchRecord(mass_kg=0.0)
-    with pytest.raises(
-        ValidationError, match='found 1000, expected no more than density_kg_m3, 950'
-    ):
+    with pytest.raises(ValidationError, match=r'found 1000, .*density_kg_m3, 950'):
         CatchRecord(mass_kg=1.0, density_kg_m3=950.0, bulk_kg_m3=1000.0)
 
 

@@ -1,6 +1,7 @@
 """A gear file is checked on load: what is wrong is said with file, key, found and expected."""
 
 import pickle
+import re
 from pathlib import Path
 from typing import Any
 
@@ -48,47 +49,33 @@ def test_a_missing_file_is_named(path: str) -> None:
         load_gear(path)
 
 
+@pytest.mark.parametrize(
+    ('key', 'values'),
+    [
+        ('warp.diameter_m', ['thick', '0.032', True, None, [0.032]]),
+        ('clump.weight_in_water_n', [float('nan'), float('inf')]),
+        ('netting.around', [6, 20, 12.5]),
+        ('headrope.length_m', [-387.0]),
+        ('kite.colour', ['orange']),
+    ],
+)
+def test_what_a_key_cannot_be_is_refused(
+    tmp_path: Path, data: dict[str, Any], key: str, values: list[object]
+) -> None:
+    section, name = key.split('.')
+    for value in values:
+        data[section][name] = value
+        assert complaint(tmp_path, data).startswith(f'{key}: ')
+
+
 def test_a_missing_key_is_named(tmp_path: Path, data: dict[str, Any]) -> None:
     del data['board']['mass_kg']
-    found = complaint(tmp_path, data)
-    assert 'board.mass_kg' in found
-    assert 'missing' in found
+    assert complaint(tmp_path, data).startswith('board.mass_kg: missing')
 
 
 def test_a_wrong_unit_is_named_with_the_right_one(tmp_path: Path, data: dict[str, Any]) -> None:
     data['bridle']['length_ft'] = 3.28 * data['bridle'].pop('length_m')
-    found = complaint(tmp_path, data)
-    assert 'bridle.length_ft' in found
-    assert 'length_m' in found
-
-
-def test_a_negative_length_is_refused(tmp_path: Path, data: dict[str, Any]) -> None:
-    data['headrope']['length_m'] = -387.0
-    found = complaint(tmp_path, data)
-    assert 'headrope.length_m' in found
-    assert '-387' in found
-    assert 'greater than 0' in found
-
-
-@pytest.mark.parametrize('value', ['thick', '0.032', True, None, [0.032]])
-def test_what_is_not_a_number_is_refused(
-    tmp_path: Path, data: dict[str, Any], value: object
-) -> None:
-    data['warp']['diameter_m'] = value
-    assert 'warp.diameter_m' in complaint(tmp_path, data)
-
-
-@pytest.mark.parametrize('value', [float('nan'), float('inf')])
-def test_numbers_that_are_none_are_refused(
-    tmp_path: Path, data: dict[str, Any], value: float
-) -> None:
-    data['clump']['weight_in_water_n'] = value
-    assert 'clump.weight_in_water_n' in complaint(tmp_path, data)
-
-
-def test_an_unknown_key_is_named(tmp_path: Path, data: dict[str, Any]) -> None:
-    data['kite']['colour'] = 'orange'
-    assert 'kite.colour' in complaint(tmp_path, data)
+    assert re.match(r'bridle\.length_ft: .*bridle\.length_m', complaint(tmp_path, data))
 
 
 def test_a_start_value_outside_its_bounds_is_refused(tmp_path: Path, data: dict[str, Any]) -> None:
@@ -110,12 +97,6 @@ def test_current_depths_must_rise(tmp_path: Path, data: dict[str, Any]) -> None:
         {'depth_m': 10.0, 'east_m_s': 0.2, 'north_m_s': 0.0},
     ]
     assert '[50.0, 10.0]' in complaint(tmp_path, data)
-
-
-@pytest.mark.parametrize('around', [6, 20, 12.5])
-def test_the_net_is_cut_into_twelfths(tmp_path: Path, data: dict[str, Any], around: float) -> None:
-    data['netting']['around'] = around
-    assert 'netting.around' in complaint(tmp_path, data)
 
 
 def test_every_mistake_is_told_at_once(tmp_path: Path, data: dict[str, Any]) -> None:

@@ -118,7 +118,7 @@ def test_definitions_carry_the_nested_types():
 @pytest.mark.parametrize('cut', [0, 3, 4, 11, 40])
 def test_bytes_cut_short_are_refused(cut):
     data = serialize(filled('sensor_msgs/msg/JointState', seed=3))
-    with pytest.raises(MessageError, match=f'{cut} bytes are not a sensor_msgs/msg/JointState'):
+    with pytest.raises(MessageError, match=f'{cut} bytes .*sensor_msgs/msg/JointState'):
         deserialize(data[:cut], 'sensor_msgs/msg/JointState')
 
 
@@ -141,7 +141,7 @@ def test_random_bytes_are_refused_or_read_but_never_crash():
 
 
 def test_an_unknown_type_is_named():
-    with pytest.raises(MessageError, match='acme_msgs/msg/Thing is not a known message type'):
+    with pytest.raises(MessageError, match='acme_msgs/msg/Thing'):
         deserialize(b'', 'acme_msgs/msg/Thing')
 
 

@@ -211,7 +211,7 @@ def fix_beyond_the_pole():
         (
             'truth/winch',
             joint_state_named('port_warp', 'starboard_warp'),
-            'not a topic with samples',
+            'not a topic',
         ),
     ],
 )

@@ -265,14 +265,14 @@ def test_refining_cuts_finer_and_keeps_the_gear(model: GearModel) -> None:
 @pytest.mark.parametrize(
     ('changes', 'part'),
     [
-        ({'length_m': 600_000.0}, r'netting\.body: found more than 30000 nodes'),
+        ({'length_m': 600_000.0}, r'netting\.body: .*30000 nodes'),
         (
             {'length_m': 0.001},
             r'netting\.body: found 1 rows',
         ),
         (
             {'front_circumference_m': 1e-300, 'back_circumference_m': 1e-300},
-            r'netting\.body: found more than 30000 nodes',
+            r'netting\.body: .*30000 nodes',
         ),
     ],
 )

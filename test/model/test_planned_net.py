@@ -345,28 +345,28 @@ def test_a_cutting_rate_stands_for_a_missing_count(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ('change', 'part'),
     [
-        (lambda p: p[0].update(cut='2Q'), "cut: found '2Q', expected a cutting rate such as AB"),
-        (lambda p: p[0].pop('rtex'), 'found neither rtex nor twine_diameter_mm'),
-        (lambda p: p[0].update(panel='all'), 'panel: found all, expected one of upper, lower'),
-        (lambda p: p.pop(0), 'found no wing of the upper panel'),
+        (lambda p: p[0].update(cut='2Q'), "cut: found '2Q'"),
+        (lambda p: p[0].pop('rtex'), 'neither rtex nor twine_diameter_mm'),
+        (lambda p: p[0].update(panel='all'), 'panel: found all'),
+        (lambda p: p.pop(0), 'no wing of the upper'),
         (
             lambda p: p[5].update(long_meshes=40),
-            "panels of section '800 mm' are 20 to 32 m long, expected one length",
+            "section '800 mm' are 20 to 32 m",
         ),
-        (lambda p: p[-1].update(front_meshes=0), 'has 0 front_meshes in all its panels'),
+        (lambda p: p[-1].update(front_meshes=0), 'has 0 front_meshes'),
         (lambda p: p[0].update(material='cotton'), "found 'cotton', expected 'PA'"),
         (lambda p: p[0].update(mesh_mm=1.0), 'mesh_mm: found 1.0'),
         (
             lambda p: p[0].update(orientation='ropes'),
-            'orientation: found ropes in a wing, 16 at its front',
+            'orientation: found ropes',
         ),
         (
             lambda p: p[5].update(orientation='ropes', back_meshes=p[5]['front_meshes']),
-            "section '800 mm' has ropes beside or behind netting",
+            "section '800 mm' has ropes",
         ),
         (
             lambda p: p[13].update(orientation='ropes', back_meshes=p[13]['front_meshes']),
-            "section '120 mm' has ropes beside or behind netting",
+            "section '120 mm' has ropes",
         ),
     ],
 )
@@ -389,7 +389,7 @@ def test_a_plan_that_cannot_be_is_refused(tmp_path: Path, change: Any, part: str
         ),
         (
             {'bridles': [{'name': 'upper', 'at_board': 'upper', 'at_net': 'upper'}]},
-            'bridles: found none at_board lower',
+            'bridles: found none',
         ),
     ],
 )
@@ -513,7 +513,7 @@ def test_square_meshes_ahead_of_the_codend_are_a_part_of_its_line(tmp_path: Path
 @pytest.mark.parametrize(
     ('section', 'message'),
     [
-        ('800 mm', 'found square in the upper body'),
+        ('800 mm', r'pieces\[4\]\.orientation: found square'),
         ('120 mm', None),
     ],
 )

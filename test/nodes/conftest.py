@@ -151,6 +151,12 @@ def open_graph(tmp_path_factory: pytest.TempPathFactory):
     return opened
 
 
+@pytest.fixture
+def graph(open_graph) -> Iterator[Graph]:
+    with open_graph() as graph:
+        yield graph
+
+
 @pytest.fixture(scope='session')
 def gear_path(gear: GearRecord, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The default gear with its netting as coarse as it may be, for speed."""

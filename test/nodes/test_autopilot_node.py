@@ -66,12 +66,6 @@ def heading_deg(odometry):
 
 
 @pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
-@pytest.fixture
 def lookout(graph):
     return graph.add(Lookout)
 

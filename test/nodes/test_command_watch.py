@@ -29,12 +29,6 @@ RATE = math.radians(1.0)
 
 
 @pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
-@pytest.fixture
 def tow(graph, gear_path):
     """A simulation and a commander."""
 

@@ -57,12 +57,6 @@ class Late(TrawlNode):
         self.listen('vessel/velocity_water', self.speeds.append, CONSUMER)
 
 
-@pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
 def test_who_comes_late_hears_what_follows_and_stops_nobody(graph, gear_path):
     lookout = graph.add(Lookout)
     first = graph.add(WinchNode, gear=str(gear_path), use_sim_time=True)

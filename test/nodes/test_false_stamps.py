@@ -24,12 +24,6 @@ START = 1_785_000_000 * SECOND
 HEADING = 'vessel/heading'
 
 
-@pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
 def heading(stamp):
     return sample_message(HeadingSample(stamp, 0.5, 0.1))[1]
 

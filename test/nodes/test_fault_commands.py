@@ -45,12 +45,6 @@ class Engineer(TrawlNode):
 
 
 @pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
-@pytest.fixture
 def engineer(graph):
     return graph.add(Engineer)
 

@@ -94,12 +94,6 @@ class Viewer:
 
 
 @pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
-@pytest.fixture
 def port():
     with socket.socket() as probe:
         probe.bind((LOCAL, 0))

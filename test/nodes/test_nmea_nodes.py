@@ -27,7 +27,7 @@ from trawl_ros.records.samples import (  # noqa: E402
     WinchSample,
 )
 from trawl_ros.sentences import links  # noqa: E402
-from trawl_ros.sentences.framing import framed  # noqa: E402
+from trawl_ros.sentences.framing import NO_TEXT, framed  # noqa: E402
 from trawl_ros.sentences.table import COMMANDS, load_table  # noqa: E402
 
 pytestmark = pytest.mark.ros
@@ -73,12 +73,6 @@ class Ship(TrawlNode):
 
     def report(self, name):
         return self.reports.get(f'/heard/nmea_in: {name}')
-
-
-@pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
 
 
 @pytest.fixture
@@ -178,12 +172,9 @@ def test_noise_is_counted_by_reason_and_what_is_whole_still_comes(graph, ship, p
     )
     graph.until(lambda: [s for (t, _), s in ship.samples.items() if t == 'door/spread'])
     graph.until(lambda: ship.report('sentences').values.get('not understood') == '5')
-    assert ship.report('sentences').values.keys() >= {
-        'not understood: a line that is no text',
-        'not understood: sentence $MPMSD: no checksum',
-        'not understood: a sentence whose checksum is wrong',
-        "not understood: sentence $MPMSD: field 5 is 'ft', expected 'm'",
-    }
+    told = ' '.join(ship.report('sentences').values)
+    for reason in (NO_TEXT, '$MPMSD: no checksum', 'checksum is wrong', "field 5 is 'ft'"):
+        assert reason in told
     assert ship.report(f'link udp://:{port}').values['lines too long'] == '1'
     (sample,) = ship.samples.values()
     assert sample.distance == pytest.approx(84.5)
@@ -206,7 +197,7 @@ def test_of_two_senders_with_one_name_the_first_is_believed_until_it_is_silent(
     graph.until(lambda: ship.report('sentences').values.get('not understood') == '3')
     (told,) = [key for key in ship.report('sentences').values if 'another source' in key]
     link = f'udp://:{port} from'
-    assert told.startswith(f'not understood: a reading of door/spread by {link} {other}')
+    assert f'door/spread by {link} {other}' in told
     assert f'another source tells: {link} {THIS_MACHINE} marport' in told
 
     def believed():

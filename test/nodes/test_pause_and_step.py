@@ -93,7 +93,7 @@ def all_heard(graph, crew, simulation):
 def test_paused_nothing_moves_and_resumed_it_goes_on_without_a_gap(graph, crew, simulation):
     answer = graph.call(crew, 'pause')
     assert answer.success
-    assert answer.message.startswith('the tow is paused')
+    assert 'paused' in answer.message
     at = all_heard(graph, crew, simulation)
     graph.rest(0.5)
     assert crew.latest == at
@@ -163,7 +163,7 @@ def test_after_a_reset_instruments_begin_anew_and_read_the_same_again(graph, cre
     graph.until(lambda: crew.latest > 22.0)
     for topic, messages in crew.samples.items():
         stamps = [stamp_of(message) for message in messages]
-        (again,) = (i for i in range(1, len(stamps)) if stamps[i] < stamps[i - 1])
+        (again,) = (i for i in range(1, len(stamps)) if stamps[i] <= stamps[i - 1])
         first, second = messages[:again], messages[again:]
         number = min(len(first), len(second))
         assert number >= 1, topic

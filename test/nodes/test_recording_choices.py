@@ -33,12 +33,6 @@ LATCHED = QoSProfile(
 )
 
 
-@pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
 class Source(TrawlNode):
     """Publishes headings on topics with profiles of their own."""
 

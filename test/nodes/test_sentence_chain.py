@@ -84,12 +84,6 @@ def renamed(name, **remaps):
 
 
 @pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
-@pytest.fixture
 def links(tmp_path):
     """A pseudo-terminal, as its maker and its user name it, and a UDP port."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:

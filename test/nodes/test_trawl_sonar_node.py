@@ -74,12 +74,6 @@ class Deck(TrawlNode):
 
 
 @pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
-@pytest.fixture
 def deck(graph, gear_path):
     deck = graph.add(Deck)
     graph.add(TrawlSonarNode, gear=str(gear_path), seed=SEED)

@@ -49,7 +49,7 @@ def test_a_long_series_is_thinned_evenly_and_said(bag, monkeypatch):
     times = tow.measured['door_spread'].times
     assert len(times) <= 50
     np.testing.assert_allclose(np.diff(times), 3.0)
-    assert 'door/spread: one of 3 of its 121 messages is shown' in tow.problems
+    assert any(p.startswith('door/spread: one of 3 of its 121') for p in tow.problems)
     assert not any('truth' in problem for problem in tow.problems)
 
 
@@ -61,5 +61,5 @@ def test_a_bag_logged_late_keeps_the_times_of_its_stamps(known, tmp_path):
 
 
 def test_a_bag_with_nothing_to_draw_says_what_is_missing(bag):
-    with pytest.raises(BagError, match='none of the topics that can be shown'):
+    with pytest.raises(BagError, match=f'{bag}.*none of the topics'):
         read_history(bag, Water().depth, 'elsewhere')

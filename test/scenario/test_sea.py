@@ -88,11 +88,11 @@ def test_waves_follow_the_seed_of_the_trial(tmp_path: Path) -> None:
         ('period_s: 8', 'period_s: 2', r'sea\.heave\.period_s: found 2, expected'),
         ('height_m: 2.5', 'kind: breaking, height_m: 2', r"found 'breaking', expected"),
         ('distance_m: 2000', 'distance_m: 0', 'profile: '),
-        ('depth_m: 90', 'depth_m: 9', r'depth_m: found 9, expected at least half of size_up_m'),
+        ('depth_m: 90', 'depth_m: 9', r'depth_m: found 9, .*size_up_m'),
         (
             'density_per_m3: 0.5',
             'density_per_m3: -1',
-            r'sea\.schools\[0\]\.density_per_m3: found -1, expected .*per cubic metre',
+            r'sea\.schools\[0\]\.density_per_m3: found -1, .*per cubic metre',
         ),
     ],
 )
@@ -125,7 +125,7 @@ def test_where_the_gear_touches_the_seabed_the_file_and_the_step_are_named(
     tmp_path: Path, model: GearModel
 ) -> None:
     shallow = SEA.replace('depth_m: 300', 'depth_m: 150').replace('310', '150')
-    with pytest.raises(ScenarioError, match=r'trial\.yaml: start: the .* touches the seabed'):
+    with pytest.raises(ScenarioError, match=r'trial\.yaml: start: .*seabed'):
         Trial(load(tmp_path, TRIAL + shallow), model=model)
     bank = (
         'sea: {seabed: {direction_deg: 90, profile: [{distance_m: -556, depth_m: 232}, '

@@ -23,8 +23,9 @@ def test_an_unstable_root_is_refused(model: GearModel, steady: SteadyState) -> N
     point = OperatingPoint(500.0, 500.0, 2.1)
     root = find_equilibrium(driven, point, steady.equilibrium)
     assert not stability(driven, root.state, root.tow).stable
-    with pytest.raises(NoSteadyState, match=r'warp 500 m at 2.1 m/s: the steady state is unstable'):
+    with pytest.raises(NoSteadyState, match=r'warp 500 m at 2\.1 m/s') as refused:
         steady_state(driven, 500.0, 2.1, start=steady.equilibrium)
+    assert refused.value.reason == 'unstable'
 
 
 @pytest.mark.parametrize(('warp', 'speed'), [(200.0, 4.0), (200.0, 3.5)])
@@ -32,9 +33,12 @@ def test_gear_that_breaks_the_surface_is_refused(
     default_model: GearModel, warp: float, speed: float
 ) -> None:
     before = time.process_time()
-    with pytest.raises(NoSteadyState, match=rf'warp {warp:g} m at {speed:g} m/s: .*surface'):
+    with pytest.raises(NoSteadyState, match=rf'warp {warp:g} m at {speed:g} m/s: ') as surfaced:
         steady_state(default_model, warp, speed)
     assert time.process_time() - before < 20.0
+    # No command helps against it.
+    assert (surfaced.value.reason, surfaced.value.remedy) == ('surfaced', '')
+    assert sentence_of(surfaced.value) == str(surfaced.value)
 
 
 @pytest.mark.parametrize('speed', [0.5, 0.6])
@@ -55,11 +59,12 @@ def test_a_tow_slowed_down_is_refused_from_where_it_was(
         find_equilibrium(model, OperatingPoint(500.0, 500.0, 0.5), slow)
 
 
-def test_a_collapsed_board_is_refused(model: GearModel) -> None:
+def test_a_collapsed_board_is_refused(model: GearModel, steady: SteadyState) -> None:
     turned = model.with_board(installation=(np.radians(-20.0), 0.0, 0.0))
-    with pytest.raises(NoSteadyState) as caught:
-        steady_state(turned, 500.0, 2.1)
-    assert caught.value.reason == 'collapsed'
+    for start in (None, steady.equilibrium):
+        with pytest.raises(NoSteadyState, match=r' -\d+\.\d') as caught:
+            steady_state(turned, 500.0, 2.1, start=start)
+        assert caught.value.reason == 'collapsed'
 
 
 def test_a_board_with_far_other_forces_is_refused_with_its_moments() -> None:
@@ -69,17 +74,27 @@ def test_a_board_with_far_other_forces_is_refused_with_its_moments() -> None:
     )
     netting = (gear := load_gear('kaifuha')).netting.model_copy(update={'around': 24})
     board = build_model(gear.model_copy(update={'netting': netting})).with_coefficients(drawn)
-    with pytest.raises(NoSteadyState, match=r'\d kN m .*\d kN m .*\d kN m') as caught:
+    with pytest.raises(NoSteadyState, match=r'(\d kN m .*){3}') as caught:
         steady_state(board, 800.0, 2.0)
     assert caught.value.reason == 'no balance'
 
 
-def test_a_board_beyond_the_range_of_its_law_is_refused(model: GearModel) -> None:
-    # The warp pulls so far aft that the boards turn across the flow, where eq. 14 does not hold.
-    behind = model.with_board(points=model.board.points - [[0.3, 0.0, 0.0], [0.0] * 3, [0.0] * 3])
-    with pytest.raises(NoSteadyState, match='40°') as caught:
-        steady_state(behind, 500.0, 2.1)
-    assert caught.value.reason == 'outside law'
+@pytest.mark.parametrize(
+    ('behind_m', 'words', 'reason'),
+    [
+        # The boards turn across the flow, where eq. 14 does not hold.
+        (0.3, '40°', 'outside law'),
+        # Behind the centre of pressure the pull turns the leading edge outward.
+        (0.5, r'(\d kN m .*){3}', 'no balance'),
+    ],
+)
+def test_boards_whose_warp_pulls_far_aft_are_refused(
+    model: GearModel, behind_m: float, words: str, reason: str
+) -> None:
+    points = model.board.points - [[behind_m, 0.0, 0.0], [0.0] * 3, [0.0] * 3]
+    with pytest.raises(NoSteadyState, match=words) as caught:
+        steady_state(model.with_board(points=points), 500.0, 2.1)
+    assert caught.value.reason == reason
 
 
 def test_a_shape_that_still_moves_at_another_speed_gives_no_state_of_that_speed(
@@ -90,17 +105,6 @@ def test_a_shape_that_still_moves_at_another_speed_gives_no_state_of_that_speed(
     np.testing.assert_allclose(found.state.node_velocities[:, 0], 2.2)
     expected = find_equilibrium(model, point).observables.array()
     np.testing.assert_allclose(found.observables.array(), expected, rtol=1e-6, atol=1e-7)
-
-
-def test_why_a_state_is_refused_is_also_said_in_a_word(
-    model: GearModel, steady: SteadyState
-) -> None:
-    turned = model.with_board(installation=(np.radians(-20.0), 0.0, 0.0))
-    with pytest.raises(NoSteadyState, match=r' -\d+\.\d') as collapsed:
-        steady_state(turned, 500.0, 2.1, start=steady.equilibrium)
-    with pytest.raises(NoSteadyState) as surfaced:
-        steady_state(model, 200.0, 3.5)
-    assert (collapsed.value.reason, surfaced.value.reason) == ('collapsed', 'surfaced')
 
 
 def test_heavy_boards_are_told_with_the_speed_at_which_their_branch_folds_back(
@@ -120,7 +124,7 @@ def test_heavy_boards_are_told_with_the_speed_at_which_their_branch_folds_back(
 def test_of_what_is_unstable_the_growing_motion_is_named(default_model: GearModel) -> None:
     turned = default_model.with_board(installation=(np.radians(15.0), 0.0, 0.0))
     start = find_equilibrium(default_model, OperatingPoint(500.0, 500.0, 2.1))
-    with pytest.raises(NoSteadyState, match='heave of one board against the other') as told:
+    with pytest.raises(NoSteadyState, match='one board against') as told:
         steady_state(turned, 500.0, 2.1, start=start)
     assert told.value.reason == 'unstable'
     assert told.value.remedy.startswith('`trawl gear state kaifuha --warp 500 --speed 2.1`')
@@ -132,23 +136,6 @@ def test_of_a_gear_with_a_file_of_its_own_the_command_asks_for_the_file(gear: Ge
     mine = gear.model_copy(update={'name': '../mine'})
     told = remedy_command(mine, OperatingPoint(410.0, 390.0, 1.5))
     assert told.startswith('`trawl gear state GEAR --warp 400 --speed 1.5`')
-
-
-def test_a_gear_that_surfaces_needs_no_command(model: GearModel) -> None:
-    with pytest.raises(NoSteadyState) as surfaced:
-        steady_state(model, 200.0, 3.5)
-    assert surfaced.value.remedy == ''
-    assert sentence_of(surfaced.value) == str(surfaced.value)
-
-
-def test_boards_that_do_not_stay_upright_are_told_with_the_moments_on_them(
-    model: GearModel,
-) -> None:
-    # The warp pulls behind the centre of pressure, which turns the leading edge outward.
-    behind = model.with_board(points=model.board.points - [[0.5, 0.0, 0.0], [0.0] * 3, [0.0] * 3])
-    with pytest.raises(NoSteadyState, match=r'\d kN m .*\d kN m .*\d kN m') as lost:
-        steady_state(behind, 500.0, 2.1)
-    assert lost.value.reason == 'no balance'
 
 
 def test_a_gear_whose_boards_lie_on_their_backs_is_refused_though_it_is_stable(

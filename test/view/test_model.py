@@ -91,7 +91,7 @@ def test_where_the_gear_has_no_steady_state_that_is_told(coarse, steady_tow):
         for s in steady_tow.samples()
     )
     notes = [record.text for record in said(coarse, wrong) if isinstance(record, Note)]
-    assert any(t.startswith('kaifuha as modelled: the gear breaks the surface') for t in notes)
+    assert any(t.startswith('kaifuha') and 'surface' in t for t in notes)
     assert 'is not drawn' in notes[-1]
 
 
@@ -123,4 +123,4 @@ def test_the_recording_of_a_real_ship_has_measured_and_model(recording, steady_t
         expected = [scale * getattr(seen, name) for _, _, seen in steady_tow.states]
         np.testing.assert_allclose(model[::3], expected, rtol=5e-3)
     notes = [row['text'][0] for _, row in recording.rows('/notes/view')]
-    assert any('broad ones the model' in text for text in notes)
+    assert any('broad ones' in text for text in notes)

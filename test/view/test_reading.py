@@ -64,7 +64,7 @@ def test_a_sweep_needs_image_and_scan_of_one_stamp_in_any_order(reader, known):
 def test_beams_of_image_and_scan_must_agree(reader, known):
     image, scan = list(known.sweep_of(known.truth_at(0.0)))[:2]
     fewer = replace(image, image=image.image[:-1])
-    with pytest.raises(MessageError, match='179 beams, and sonar/scan of the same stamp has 180'):
+    with pytest.raises(MessageError, match=r'179 beams, .*sonar/scan .*180'):
         taken(reader, sample_message(fewer), sample_message(scan))
 
 
@@ -77,7 +77,8 @@ def test_markers_draw_the_gear_and_truth_once_they_are_silent(reader, known):
             messages.append(gear_markers(known.picture_of(truth)))
         sources += [gear.source for gear in of(Gear, taken(reader, *messages))]
     assert sources[:20] == ['truth'] * 20
-    assert set(sources[20:]) == {'truth of doors and mouth; warps and bridles drawn straight'}
+    (later,) = set(sources[20:])
+    assert later.startswith('truth of doors and mouth')
     assert len(sources) == pytest.approx(50, abs=3)
 
 
@@ -102,7 +103,7 @@ def test_a_repeated_status_is_shown_once(reader, known):
 @pytest.mark.parametrize('value', ['', 'nan', 'much', '1e999'])
 def test_an_estimate_without_a_number_is_refused(reader, value):
     status = Status('identification: coefficients', OK, '', {'a1': value, 'windows': '1'})
-    with pytest.raises(MessageError, match=r'a1 is .*; expected a number'):
+    with pytest.raises(MessageError, match=f"^identification: coefficients: a1 is '{value}'"):
         taken(reader, ('identification/status', diagnostic_array(0, [status])))
 
 

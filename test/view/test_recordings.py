@@ -134,7 +134,7 @@ def test_readings_alone_draw_the_gear_and_say_so(readings, read_back, tmp_path):
     found = read_back(tmp_path / 'readings.rrd')
     assert '/map/gear/port_warp' in found.entities
     notes = [row['text'][0] for _, row in found.rows('/notes/view')]
-    assert any('as measured; warps drawn straight' in text for text in notes)
+    assert any('as measured' in text for text in notes)
     assert not any(path.endswith('/truth') for path in found.entities)
 
 
@@ -143,7 +143,7 @@ def test_many_messages_are_thinned_out_and_that_is_told(tow, read_back, tmp_path
     monkeypatch.setattr(bags, 'MOST_PICTURES', 10)
     done = run(tow, '--out', tmp_path / 'tow.rrd')
     assert done.exit_code == 0, done.output
-    assert 'winch/joint_states: one of 3 of its 121 messages is shown' in done.stderr
+    assert 'winch/joint_states: one of 3 of its 121 messages' in done.stderr
     found = read_back(tmp_path / 'tow.rrd')
     times, _ = found.series('/histories/warp_length/port_length/measured')
     assert len(times) == 41
@@ -153,7 +153,7 @@ def test_many_messages_are_thinned_out_and_that_is_told(tow, read_back, tmp_path
 def test_two_tows_are_not_laid_over_each_other(tow, readings, tmp_path):
     done = run(tow, readings, '--out', tmp_path / 'tow.rrd')
     assert done.exit_code == 1
-    assert 'at the same time; expected bags of one tow' in done.stderr
+    assert 'bags of one tow' in done.stderr
     assert not (tmp_path / 'tow.rrd').exists()
 
 
@@ -171,4 +171,5 @@ def test_a_file_is_replaced_when_asked_alone(tow, tmp_path):
 def test_a_bag_of_somebody_else_is_refused(estimates, tmp_path):
     done = run(estimates, '--out', tmp_path / 'tow.rrd', '--namespace', 'other')
     assert done.exit_code == 1
-    assert 'holds none of the topics that can be shown' in done.stderr
+    assert str(estimates) in done.stderr
+    assert 'none of the topics' in done.stderr

@@ -75,7 +75,7 @@ def test_a_port_of_the_page_that_is_taken_meanwhile_is_told(tmp_path):
         taken.bind(('127.0.0.1', 0))
         taken.listen()
         port = taken.getsockname()[1]
-        with pytest.raises(ViewerFailed, match=f'127.0.0.1 port {port}: cannot be listened on'):
+        with pytest.raises(ViewerFailed, match=f'127.0.0.1 port {port}: '):
             Page(('127.0.0.1', port), port + 1, tmp_path, NO_DISPLAY)
 
 
@@ -112,13 +112,13 @@ def test_a_window_needs_a_display():
 
 
 def test_an_address_is_checked_and_a_taken_port_told():
-    with pytest.raises(ViewerFailed, match='--bind everywhere: expected an IP address'):
+    with pytest.raises(ViewerFailed, match='--bind everywhere: '):
         address_of('everywhere')
     with socket.socket() as taken:
         taken.bind(('127.0.0.1', 0))
         taken.listen()
         port = taken.getsockname()[1]
-        with pytest.raises(ViewerFailed, match=f'port {port}: cannot be listened on'):
+        with pytest.raises(ViewerFailed, match=f'port {port}: '):
             Viewer('web', port=port)
 
 

@@ -5,7 +5,7 @@ from datetime import datetime, timezone
 
 import pytest
 
-from trawl_ros.bags.logs.import_log import import_log
+from trawl_ros.bags.logs.import_log import NO_READING, import_log
 from trawl_ros.bags.logs.layout import parse_degrees
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import LogError
@@ -85,7 +85,7 @@ def test_the_time_of_day_goes_on_over_midnight(run):
 
 def test_a_clock_time_that_a_zone_had_twice_is_refused(run):
     log = 't,p\n2026-10-25 02:30:00,1\n'
-    with pytest.raises(LogError, match='clocks of Europe/Oslo are set; utc_offset_h in place'):
+    with pytest.raises(LogError, match=r'Europe/Oslo.*utc_offset_h'):
         run(log, 'clock: {columns: [t], format: iso, zone: Europe/Oslo}\n' + PRESSURE)
 
 
@@ -113,10 +113,10 @@ topics:
         ('{columns: [t], format: day of year}', 'year: missing'),
         ("{columns: [t], format: '%H:%M:%S'}", 'date: missing'),
         ('{columns: [t], format: seconds, year: 2026}', 'year: given, expected none'),
-        ('{columns: [t], format: iso, zone: Oslo}', "zone: found 'Oslo', expected a name such as"),
-        ('{columns: [t], format: iso, zone: UTC, utc_offset_h: 1}', 'zone: beside utc_offset_h'),
-        ('{columns: [t], format: sekunden}', "format: found 'sekunden', expected one such as"),
-        ("{columns: [t], format: '%Y%Y'}", "format: found '%Y%Y', expected each directive once"),
+        ('{columns: [t], format: iso, zone: Oslo}', "zone: found 'Oslo'"),
+        ('{columns: [t], format: iso, zone: UTC, utc_offset_h: 1}', 'zone: .*utc_offset_h'),
+        ('{columns: [t], format: sekunden}', "format: found 'sekunden'"),
+        ("{columns: [t], format: '%Y%Y'}", "format: found '%Y%Y'"),
         ('{columns: [t], format: elapsed hours, start: noon}', "start: found 'noon'"),
     ],
 )
@@ -155,39 +155,32 @@ def test_semicolons_decimal_commas_units_comments_and_another_encoding(run):
     assert said.rows == 2
 
 
-def test_errors_name_the_line_of_the_file_not_that_of_the_table(run):
-    with pytest.raises(LogError, match=r"line 7, column 'Druck \[bar\]': found 'viel', expected"):
-        run(GERMAN.replace('13,6', 'viel'), GERMAN_MAPPING, encoding='cp1252')
-
-
-def test_a_point_where_commas_are_due_is_refused(run):
-    with pytest.raises(LogError, match=r"found '13\.5', expected a number with a decimal comma"):
-        run(GERMAN.replace('13,5', '13.5'), GERMAN_MAPPING, encoding='cp1252')
+@pytest.mark.parametrize(
+    ('old', 'new', 'words'),
+    [
+        ('13,6', 'viel', r"line 7, column 'Druck \[bar\]'.*'viel'"),
+        ('13,5', '13.5', r"line \d, column 'Druck \[bar\]'.*'13\.5'"),
+    ],
+    ids=['no number', 'a point'],
+)
+def test_errors_name_the_line_of_the_file_not_that_of_the_table(run, old, new, words):
+    with pytest.raises(LogError, match=words):
+        run(GERMAN.replace(old, new), GERMAN_MAPPING, encoding='cp1252')
 
 
 @pytest.mark.parametrize(
-    ('separator', 'log'),
+    ('layout', 'log', 'encoding'),
     [
-        ('tab', 't\tp\n1785609531\t13.5\n'),
-        ('blanks', '  t     p\n1785609531   13.5\n'),
-        ("'|'", 't|p\n1785609531|13.5\n'),
+        ('separator: tab', 't\tp\n1785609531\t13.5\n', 'utf-8'),
+        ('separator: blanks', '  t     p\n1785609531   13.5\n', 'utf-8'),
+        ("separator: '|'", 't|p\n1785609531|13.5\n', 'utf-8'),
+        ('names: [t, x, p]', '1785609531,7,13.5\n', 'utf-8'),
+        ('encoding: utf-16', 't,p\r\n1785609531,13.5\r\n', 'utf-16'),
     ],
 )
-def test_separators(run, separator, log):
-    mapping = f'clock: {{columns: [t], format: seconds}}\nlayout: {{separator: {separator}}}\n'
-    _, found = run(log, mapping + PRESSURE)
-    assert stamps(found) == [AT]
-
-
-def test_a_file_without_column_names_gets_them_from_the_mapping(run):
-    mapping = 'clock: {columns: [t], format: seconds}\nlayout: {names: [t, x, p]}\n'
-    _, found = run('1785609531,7,13.5\n', mapping + PRESSURE)
-    assert stamps(found) == [AT]
-
-
-def test_windows_files_in_utf_16(run):
-    mapping = 'clock: {columns: [t], format: seconds}\nlayout: {encoding: utf-16}\n'
-    _, found = run('t,p\r\n1785609531,13.5\r\n', mapping + PRESSURE, encoding='utf-16')
+def test_separators_names_and_encodings_are_as_the_mapping_says(run, layout, log, encoding):
+    mapping = f'clock: {{columns: [t], format: seconds}}\nlayout: {{{layout}}}\n'
+    _, found = run(log, mapping + PRESSURE, encoding=encoding)
     assert stamps(found) == [AT]
 
 
@@ -220,11 +213,11 @@ def test_a_long_table_is_put_together_by_instant(run):
     assert stamps(found, 'door/port/attitude') == [AT, AT + 20 * 10**9]
     assert math.degrees(found['door/port/attitude'][1].pitch) == pytest.approx(3.6)
     assert said.rows == 3
-    assert said.left_out == {'no reading, or none that is new': 1}
+    assert said.left_out == {NO_READING: 1}
 
 
 def test_a_long_table_without_a_name_that_is_wanted_is_refused(run):
-    with pytest.raises(LogError, match=r"no row with 'DepthPort' in column 'sensor' .* Battery"):
+    with pytest.raises(LogError, match=r"'DepthPort' in column 'sensor' .* Battery"):
         run(LONG.replace('DepthPort', 'DepthStbd'), LONG_MAPPING)
 
 
@@ -232,24 +225,22 @@ def test_rows_can_be_picked_and_those_left_out_are_counted(run):
     mapping = 'clock: {columns: [t], format: seconds}\nonly: {state: [towing, EQ]}\n' + PRESSURE
     said, found = run('t,p,state\n1,1,towing\n2,2,shooting\n3,3,EQ\n4,,EQ\n', mapping)
     assert stamps(found) == [10**9, 3 * 10**9]
-    assert said.left_out == {
-        "column 'state' is not towing or EQ": 1,
-        'no reading, or none that is new': 1,
-    }
+    assert said.left_out.pop(NO_READING) == 1
+    (reason,) = said.left_out
+    assert "column 'state'" in reason
+    assert said.left_out[reason] == 1
 
 
 def test_rows_that_make_no_sense_are_left_out_and_counted_where_that_is_asked_for(run):
     log = 't,p\n1,1\nx,2\n3,much\n4,4,4\n5,5\n'
     mapping = 'clock: {columns: [t], format: seconds}\n' + PRESSURE
-    with pytest.raises(LogError, match="line 3, column 't': found 'x', expected a time as seconds"):
+    with pytest.raises(LogError, match="line 3, column 't': found 'x'"):
         run(log, mapping)
     said, found = run(log, mapping, leave_out=True)
     assert stamps(found) == [10**9, 5 * 10**9]
-    assert said.left_out == {
-        "column 't': expected a time as seconds": 1,
-        "column 'p': expected a number (bar)": 1,
-        'another number of cells than columns': 1,
-    }
+    assert list(said.left_out.values()) == [1, 1, 1]
+    for part in ("column 't'", "column 'p'", 'number of cells'):
+        assert part in ' '.join(said.left_out)
 
 
 def test_a_reading_that_the_logger_repeats_is_one_reading(run):
@@ -336,7 +327,7 @@ topics:
     _, found = run(log, mapping)
     (fix,) = found['vessel/fix']
     assert (fix.latitude, fix.longitude) == pytest.approx((57 + 30.5 / 60, -152 - 15.25 / 60))
-    with pytest.raises(LogError, match="column 'ew': found 'X', expected N, S, E or W"):
+    with pytest.raises(LogError, match="column 'ew': found 'X'"):
         run(log.replace('W', 'X'), mapping)
 
 
@@ -356,11 +347,11 @@ topics:
 @pytest.mark.parametrize(
     ('old', 'new', 'words'),
     [
-        ('encoding: cp1252', 'encoding: ebcdic-x', "encoding: found 'ebcdic-x', expected one such"),
-        ("separator: ';'", "separator: ';;'", "separator: found ';;', expected one character"),
-        ("separator: ';'", "separator: ','", "separator: found ',', which is the decimal sign"),
+        ('encoding: cp1252', 'encoding: ebcdic-x', "encoding: found 'ebcdic-x'"),
+        ("separator: ';'", "separator: ';;'", "separator: found ';;'"),
+        ("separator: ';'", "separator: ','", "separator: found ','"),
         ("decimal: ','", "decimal: ' '", 'decimal'),
-        ('unit: fathom}', 'unit: fathom, hemisphere: x}', 'hemisphere: given, expected none'),
+        ('unit: fathom}', 'unit: fathom, hemisphere: x}', 'hemisphere: given'),
     ],
 )
 def test_layouts_that_make_no_sense_are_refused(run, old, new, words):
@@ -371,7 +362,7 @@ def test_layouts_that_make_no_sense_are_refused(run, old, new, words):
 
 def test_a_line_without_end_takes_no_memory(run):
     mapping = 'clock: {columns: [t], format: seconds}\n' + PRESSURE
-    with pytest.raises(LogError, match='line 2 has 1000000 characters or more'):
+    with pytest.raises(LogError, match=r'line 2 .*1000000'):
         run('t,p\n' + '1' * 1_000_100, mapping)
 
 

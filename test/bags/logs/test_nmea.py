@@ -11,6 +11,8 @@ from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import LogError
 from trawl_ros.messages.from_messages import to_sample
+from trawl_ros.sentences.framing import NO_TEXT
+from trawl_ros.sentences.log import UNDATED
 from trawl_ros.sentences.log_times import spread_stamps
 
 MAPPING = Path(__file__).parents[3] / 'config/logs/nmea.yaml'
@@ -85,12 +87,17 @@ def test_position_speed_heading_and_depth_come_out_in_si_and_east_north_up(run):
     assert said.rows == 8
 
 
+def counted(said, *names):
+    """Count what was left out by a reason that has each of these names."""
+    return sum(n for why, n in said.left_out.items() if all(name in why for name in names))
+
+
 def test_one_kind_of_sentence_tells_a_topic_and_the_others_are_counted(run):
     said, found = run()
     assert len(found['vessel/fix']) == 2
-    assert said.left_out['RMC for vessel/fix, which GGA tells'] == 1
-    assert said.left_out['RMC for vessel/velocity_ground, which VTG tells'] == 1
-    assert said.left_out['sentence $GPGSV, which no table has'] == 1
+    assert counted(said, 'RMC', 'vessel/fix', 'GGA') == 1
+    assert counted(said, 'RMC', 'vessel/velocity_ground', 'VTG') == 1
+    assert counted(said, '$GPGSV') == 1
 
 
 def test_without_the_better_sentence_the_next_one_tells(run):
@@ -107,9 +114,9 @@ def test_a_damaged_sentence_gives_nothing_and_is_counted(run):
     said, found = run(lines=lines)
     assert 'vessel/heading' not in found
     assert 'vessel/echo_sounder/depth' not in found
-    assert said.left_out['a sentence whose checksum is wrong'] == 1
+    assert counted(said, 'checksum is wrong') == 1
     assert said.left_out['sentence $SDDPT: no checksum'] == 1
-    assert said.left_out['a line that is no text'] == 1
+    assert said.left_out[NO_TEXT] == 1
 
 
 def test_a_sentence_cut_short_by_the_next_costs_only_itself(run):
@@ -197,7 +204,7 @@ def test_the_date_of_a_receiver_without_a_fix_is_not_believed(run):
 
 def test_what_comes_before_the_first_date_is_left_out(run):
     said, found = run([LOG[1], LOG[3], *LOG])
-    assert said.left_out['before the first time with a date'] == 2
+    assert said.left_out[UNDATED] == 2
     assert len(found['vessel/fix']) == 2
 
 
@@ -229,7 +236,7 @@ def test_of_two_talkers_the_busier_one_is_heard_or_who_the_mapping_names(run, tm
     contents = [RMC, 'HEHDT,180.0,T', 'HEHDT,180.0,T', 'GPHDT,90.0,T']
     said, found = run(contents)
     assert len(found['vessel/heading']) == 2
-    assert said.left_out['HDT of GP for vessel/heading, which HE tells'] == 1
+    assert counted(said, 'HDT of GP', 'vessel/heading', 'HE') == 1
     (tmp_path / 'bag').rename(tmp_path / 'first')
     mapping = changed('sentences: [THS, HDT]', 'sentences: [THS, HDT]\n      talkers: [GP]')
     _, found = run(contents, mapping=mapping)
@@ -256,7 +263,7 @@ def test_times_of_a_recorder_stand_in_front(run, front, form):
 
 def test_a_recorders_time_that_is_none_is_an_error_with_its_line(run):
     lines = ['2026-08-01T10:38:51Z ' + sentence(RMC), 'yesterday ' + sentence(RMC)]
-    with pytest.raises(LogError, match="line 2: found 'yesterday' in front of the sentence"):
+    with pytest.raises(LogError, match="line 2: found 'yesterday'"):
         run(lines=lines, mapping=RECORDED)
     said, found = run(lines=lines, mapping=RECORDED, leave_out=True)
     assert len(found['vessel/fix']) == 1
@@ -267,10 +274,10 @@ def test_a_recorders_time_that_is_none_is_an_error_with_its_line(run):
     ('old', 'new', 'words'),
     [
         ('vessel/heading:', 'vessel/course:', 'topics.vessel/course: unknown topic'),
-        ('[THS, HDT]', '[HDM]', 'sentences: found HDM, expected some of THS, HDT'),
+        ('[THS, HDT]', '[HDM]', 'sentences: found HDM,.*THS, HDT'),
         ('value: 1.0, unit: deg', 'value: 1.0, unit: m', "std.unit: found 'm'"),
         ('max_range: {value: 2000.0', 'max_reach: {value: 2000.0', 'max_reach'),
-        ('  time: sentences', '  time: recorder', 'recorder: missing, expected its format'),
+        ('  time: sentences', '  time: recorder', 'recorder: missing'),
         ('  time: sentences', '  date: tomorrow\n  time: sentences', "date: found 'tomorrow'"),
     ],
 )
@@ -282,7 +289,7 @@ def test_mistakes_in_the_mapping_are_named_with_their_key(run, old, new, words):
 def test_a_line_without_end_takes_no_memory(run, tmp_path):
     said, found = run(lines=[sentence(RMC), 'x' * 100_000, sentence(LOG[3])])
     assert len(found['vessel/heading']) == 1
-    assert said.left_out['more than 1024 bytes without a sentence'] == 1
+    assert counted(said, '1024 bytes') == 1
 
 
 def test_no_garbled_log_crashes(run, tmp_path):
@@ -297,15 +304,15 @@ def test_no_garbled_log_crashes(run, tmp_path):
 @pytest.mark.parametrize(
     ('changed', 'why'),
     [
-        (('5730.5000', '9959.4000'), 'latitude beyond -90 to 90 degrees'),
-        (('15215.2500', '100000.0000'), 'longitude beyond -180 to 180 degrees'),
-        (('090.0', '720.0'), 'compass angle beyond -180 to 360 degrees'),
-        (('3.9', '9999.0'), 'speed beyond 0 to 60 m/s'),
+        (('5730.5000', '9959.4000'), 'latitude'),
+        (('15215.2500', '100000.0000'), 'longitude'),
+        (('090.0', '720.0'), 'compass angle'),
+        (('3.9', '9999.0'), 'east'),
     ],
 )
 def test_what_cannot_be_is_left_out_by_its_reason(run, changed, why):
     said, found = run([RMC, RMC.replace('103851', '103852').replace(*changed)])
-    assert [count for reason, count in said.left_out.items() if reason.endswith(why)] == [1]
+    assert counted(said, f'{why} beyond') == 1
     assert sum(map(len, found.values())) == 3
 
 

@@ -77,11 +77,11 @@ def test_what_does_not_fit_into_the_time_is_told_apart():
 
 def test_a_slow_adviser_is_waited_for_and_a_poor_one_not_for_ever():
     settings = TrialSettings(least_looked_up=0.3, advice_patience=600.0)
-    assert waiting_for_advice(Knowledge(), settings, 0.0) == 'for the first window'
+    assert 'first window' in waiting_for_advice(Knowledge(), settings, 0.0)
     late = Knowledge(windows=4, advised=2, looked_up=1.0)
-    assert waiting_for_advice(late, settings, 1e5).startswith('for advice after 4 windows')
+    assert waiting_for_advice(late, settings, 1e5).startswith('for advice after 4 ')
     older = Knowledge(4, {}, 2, 1.0, PROPOSALS)
-    assert waiting_for_advice(older, settings, 599.0).startswith('for advice after 4 windows')
+    assert waiting_for_advice(older, settings, 599.0).startswith('for advice after 4 ')
     assert waiting_for_advice(older, settings, 600.0) == ''
     poor = Knowledge(windows=4, advised=4, looked_up=0.1)
     assert '10 % are' in waiting_for_advice(poor, settings, 599.0)

@@ -45,7 +45,7 @@ def test_it_begins_where_the_ship_is_and_goes_where_it_is_advised(sailing):
     assert ship.state.phase == 'tow'
     ship.windows(2)
     ship.sail(1.0)
-    assert str(ship.state) == 'on the way to 400 m at 2.10 m/s'
+    assert (ship.state.phase, str(ship.state.target)) == ('transit', '400 m at 2.10 m/s')
     ship.sail(400.0)
     assert ship.state.phase == 'tow'
     assert ship.lengths == (400.0, 400.0)
@@ -60,7 +60,7 @@ def test_nothing_is_commanded_before_all_that_is_needed_is_read(sailing):
     ship = sailing(SETTINGS, silent={'log'})
     ship.sail(60.0)
     assert all(command is None for _, command in ship.commands)
-    assert str(ship.state) == 'waits: for readings of speed'
+    assert str(ship.state.waits).endswith('readings of speed')
     ship.silent.clear()
     ship.sail(3.0)
     assert ship.state.phase == 'tow'
@@ -103,15 +103,15 @@ def test_a_frozen_load_cell_and_a_winch_that_does_not_follow_make_it_hold(ship, 
     assert not ship.state.held
     ship.obeys = False
     ship.sail(120.0)
-    assert 'port winch does not follow' in ship.state.held
+    assert any(why.startswith('port winch') for why in ship.state.held)
 
 
 @pytest.mark.parametrize(
     ('limit', 'said'),
     [
-        ({'max_tension': 200e3}, 'tension of the port warp above 200 kN'),
-        ({'max_depth': 110.0}, 'gear below 110 m'),
-        ({'clearance': 895.0}, 'gear less than 895 m above the seabed'),
+        ({'max_tension': 200e3}, ('port warp', '200 kN')),
+        ({'max_depth': 110.0}, ('gear below', '110 m')),
+        ({'clearance': 895.0}, ('above the seabed', '895 m')),
     ],
 )
 def test_at_a_limit_it_holds_and_after_a_minute_goes_back(ship, limit, said):
@@ -126,7 +126,7 @@ def test_at_a_limit_it_holds_and_after_a_minute_goes_back(ship, limit, said):
         while not ship.state.held:
             ship.sail(0.5)
         assert not moved(ship, 10.0)
-    assert ship.state.held[0] == said
+    assert all(part in ship.state.held[0] for part in said)
     ship.sail(60.0)
     assert ship.state.target == TrialTarget(port=300.0, starboard=300.0, speed=2.1)
     # At the highest tension it hauls at a tenth of the speed.
@@ -212,7 +212,7 @@ def test_without_new_advice_it_goes_by_the_older_after_ten_minutes(ship):
     ship.sail(590.0)
     assert 'advice' in ship.state.waits
     ship.sail(15.0)
-    assert str(ship.state) == 'on the way to 500 m at 2.10 m/s'
+    assert (ship.state.phase, str(ship.state.target)) == ('transit', '500 m at 2.10 m/s')
 
 
 def test_it_ends_when_enough_is_known_or_the_time_is_up(sailing):

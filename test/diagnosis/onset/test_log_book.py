@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -26,7 +27,7 @@ def test_an_event_has_its_time_its_finding_and_who_was_told(tmp_path):
         'discrepancy_node',
         ['bridge'],
     )
-    assert 'kite has begun 1.0 min ago' in event['sentence']
+    assert re.search(r'kite .* 1\.0 min ', event['sentence'])
     assert book.last_number() == 3
 
 
@@ -78,7 +79,7 @@ OWN = b'{"time": "2026", "event": "begun", "stamp_ns": 0, "who": "discrepancy_no
 def test_a_foreign_file_is_refused_and_stays(tmp_path, content, name):
     path = tmp_path / name
     path.write_bytes(content)
-    with pytest.raises(TrawlError, match='left as it is'):
+    with pytest.raises(TrawlError, match=f'{path}: '):
         LogBook(tmp_path / 'book')
     assert path.read_bytes() == content
     assert [file.name for file in tmp_path.iterdir()] == [name]
@@ -88,7 +89,7 @@ def test_a_foreign_file_that_comes_later_is_not_replaced(tmp_path, monkeypatch):
     monkeypatch.setattr(log_book, 'MOST_BYTES', 1000)
     book = LogBook(tmp_path / 'book')
     (tmp_path / 'book.1').write_text('mine')
-    with pytest.raises(TrawlError, match='left as it is'):  # noqa: PT012
+    with pytest.raises(TrawlError, match=r'book\.1: '):  # noqa: PT012
         for stamp in range(40):
             book.write('raised', stamp, 'discrepancy_node', FINDING)
     assert (tmp_path / 'book.1').read_text() == 'mine'

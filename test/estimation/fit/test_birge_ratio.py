@@ -9,6 +9,7 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimator import AS_LIKELY, Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import Fit
+from trawl_ros.estimation.fit.line_search import NO_STEADY_STATE
 from trawl_ros.estimation.fit.linearised import linearise
 
 LONG = 700.0
@@ -62,7 +63,7 @@ def test_a_single_window_need_not_hold_up_the_rest(sea, prior, exact, set_aside,
     assert estimate.windows == len(exact)
     away = abs(estimate.values[0] - sea.TRUTH[0]) / estimate.std[0]
     assert (away < 3.0) == gets_there
-    assert ('without a steady state' in estimate.reason) != gets_there
+    assert (NO_STEADY_STATE in estimate.reason) != gets_there
 
 
 def test_the_likelier_of_two_fits_stays(sea, prior, exact):

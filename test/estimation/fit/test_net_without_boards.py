@@ -1,5 +1,7 @@
 """Without boards drag and weight of the net are what is estimated, and what reports tell."""
 
+import re
+
 import pytest
 
 from trawl_ros.estimation.fit.estimator import Estimator
@@ -62,8 +64,8 @@ def test_the_report_tells_of_the_net_and_of_no_coefficient(
 ) -> None:
     told = report(identification, gear=pair_gear)
     sentences = ' '.join(closing_lines(told))
-    assert 'The gear has no boards: drag and weight of its net are estimated.' in sentences
-    assert 'Drag of the net: 1.' in sentences
+    assert 'no boards' in sentences
+    assert re.search(r'Drag .*: 1\.', sentences)
     assert 'coefficients' not in sentences
     assert told.laws is None
     page = report_page(told, ())

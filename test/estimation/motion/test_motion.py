@@ -176,7 +176,7 @@ def test_what_the_model_cannot_tow_is_left_out_and_told(coarse):
     assert len(there.left_out) == len(tow)
     assert 'towed' in there.left_out[0].why or 'surface' in there.left_out[0].why
     needed = np.ones(len(tow), dtype=bool)
-    with pytest.raises(NoSteadyState, match='0 s after the beginning'):
+    with pytest.raises(NoSteadyState, match=r'^0 s after'):
         linearise_tow(TowedGear(coarse), replace(tow, inputs=gone), point, needed)
 
 
@@ -221,7 +221,7 @@ def test_stretches_in_which_derivatives_explode_are_left_out_and_told(coarse, mo
     monkeypatch.setattr(towed_stretch, 'UNSTABLE', 0.5 * sharp[1:].max())
     there = linearise_tow(TowedGear(coarse), tow, point)
     assert not there.towed.all()
-    assert 'the motion of the model is unstable' in [part.why for part in there.left_out]
+    assert any('unstable' in part.why for part in there.left_out)
 
 
 def rows(chance, number=60, noise=0.5, model=1.0):

@@ -73,7 +73,7 @@ def test_a_step_on_which_boards_fall_is_given_up_as_soon_as_it_is_refused(coarse
     whole, _ = far.linearise(far.here, 1)
     assert list(whole[0].towed) == [True, False, False, False]
     spent = far.factorisations
-    with pytest.raises(NoSteadyState, match='20 s after the beginning a board of the model falls'):
+    with pytest.raises(NoSteadyState, match=r'20 s after .* board'):
         far.linearise(far.here, 1, before=[np.ones(4, bool)])
     assert 0 < far.factorisations - spent < spent
     assert far.towings == 2

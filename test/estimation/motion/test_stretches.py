@@ -144,9 +144,9 @@ def test_the_beginning_does_not_count_where_what_was_before_is_not_known():
 @pytest.mark.parametrize(
     ('changes', 'words'),
     [
-        ({'silent': (100.0, 160.0)}, 'bag: speed .* is silent for 90 s, expected 10 s'),
-        ({'silent': (-1.0, 1e9)}, 'bag: fewer than 15 usable readings of speed'),
-        ({'duration_s': 150.0}, 'bag: lasts 150 s, expected at least 200 s'),
+        ({'silent': (100.0, 160.0)}, 'bag: speed .* 90 s, .* 10 s'),
+        ({'silent': (-1.0, 1e9)}, 'bag: .* 15 .* speed'),
+        ({'duration_s': 150.0}, 'bag: lasts 150 s, .* 200 s'),
     ],
 )  # fmt: skip
 def test_what_cannot_be_towed_along_is_refused(changes, words):
@@ -156,7 +156,7 @@ def test_what_cannot_be_towed_along_is_refused(changes, words):
 
 def test_a_tow_that_is_too_long_is_refused(monkeypatch):
     monkeypatch.setattr(stretches, 'LONGEST_S', 300.0)
-    with pytest.raises(TrawlError, match='bag: lasts 400 s, expected at most 300 s'):
+    with pytest.raises(TrawlError, match=r'bag: lasts 400 s, .* 300 s'):
         tow_of()
 
 

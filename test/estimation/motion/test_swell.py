@@ -30,14 +30,15 @@ def test_a_swell_is_told_by_its_swing(swing):
     assert swell_of(read(swing), 30.0) == pytest.approx(swing, rel=0.1)
 
 
-@pytest.mark.parametrize('haul', [0.0, 0.3])
-def test_a_calm_sea_has_none_though_a_winch_starts(haul):
-    assert swell_of(read(0.0, haul=haul), 30.0) == 0.0
-
-
-def test_tension_that_is_read_now_and_then_tells_nothing():
-    assert swell_of(read(0.05, every=5.0), 30.0) == 0.0
-
-
-def test_a_tow_without_tension_has_none():
-    assert swell_of(TowReadings(0, {}, (NOTHING, NOTHING)), 30.0) == 0.0
+@pytest.mark.parametrize(
+    'tow',
+    [
+        read(0.0),
+        read(0.0, haul=0.3),
+        read(0.05, every=5.0),
+        TowReadings(0, {}, (NOTHING, NOTHING)),
+    ],
+    ids=['calm sea', 'a winch starts', 'read now and then', 'no tension'],
+)
+def test_of_what_is_no_swell_nothing_is_told(tow):
+    assert swell_of(tow, 30.0) == 0.0

@@ -1,5 +1,6 @@
 """The next manoeuvre is the one that tells most per minute, and tells what it promises."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -192,10 +193,7 @@ def test_an_estimate_that_could_not_tow_the_gear_leaves_the_advice_of_an_earlier
     wrong = replace(fit, coefficients=untowable)
     while adviser.look_up(wrong.coefficients):
         pass
-    assert adviser.trouble == (
-        'by this estimate the gear can be towed in none of 4 manoeuvres (collapsed 4); the 4 of an '
-        'earlier estimate serve'
-    )
+    assert re.search(r'none of 4 .*\(collapsed 4\); the 4 ', adviser.trouble)
     assert adviser.known == before
     advice = adviser.advise(wrong)
     assert advice.windows == len(wrong.windows)
@@ -219,10 +217,7 @@ def test_an_estimate_that_could_not_tow_the_gear_where_it_is_is_not_believed(
     assert set(adviser.known) == {*before, Manoeuvre(200.0, 200.0, 1.9)}
     for known in adviser.known.values():
         assert np.array_equal(known.part.at, fit.coefficients)
-    assert adviser.trouble == (
-        'by this estimate the gear could not be towed where it is, 500 m at 2.1 m/s (collapsed); '
-        'the 1 manoeuvres of an earlier estimate serve'
-    )
+    assert re.search(r'500 m at 2\.1 m/s \(collapsed\); the 1 ', adviser.trouble)
     assert adviser.advise(replace(fit, coefficients=untowable)).ranking
     assert not adviser.look_up(fit.coefficients, here)
     assert adviser.trouble == ''
@@ -232,9 +227,7 @@ def test_a_first_estimate_that_could_not_tow_the_gear_is_told(record, predictor,
     adviser = Adviser(record, predictor, Limits(lengths=(500.0,), speeds=(2.1,), shorter=()))
     assert adviser.trouble == ''
     assert adviser.look_up(untowable)
-    assert adviser.trouble == (
-        'by this estimate the gear can be towed in none of 1 manoeuvres (collapsed 1)'
-    )
+    assert re.search(r'none of 1 .*\(collapsed 1\)$', adviser.trouble)
 
 
 def test_what_an_earlier_estimate_towed_faster_says_nothing_of_slower_ones(record, predictor, fit):

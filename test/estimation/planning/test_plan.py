@@ -133,9 +133,9 @@ def test_tension_and_seabed_keep_manoeuvres_away(plan, record):
 
 
 def test_too_little_time_and_nothing_to_tow_are_said(record):
-    with pytest.raises(TrawlError, match=r'0.1 h are time for 0 of at least 2 legs'):
+    with pytest.raises(TrawlError, match=r'0\.1 h .* 0 of .* 2 legs'):
         plan_for(record, hours=0.1, limits=Limits((200.0,), (2.5,), ()))
-    with pytest.raises(TrawlError, match=r'none of 1 manoeuvres, 30 to 30 m .* expected one'):
+    with pytest.raises(TrawlError, match=r'none of 1 manoeuvres, 30 to 30 m'):
         plan_for(record, limits=Limits((30.0,), (2.1,), ()))
 
 

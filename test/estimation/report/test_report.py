@@ -180,10 +180,10 @@ def test_the_spectrum_is_that_of_the_sensitivities(prior, weight):
 
 def test_the_verdict_speaks_of_tows_where_there_are_several(tows, one_tow):
     several, single = verdict(report(tows)), verdict(report(one_tow))
-    assert several.fit.startswith('Tows left out of the fit')
+    assert several.fit.startswith('Tows ')
     assert several.holds
     assert 'door spread' in several.fit
-    assert single.fit.startswith('Steady states of this one tow')
+    assert single.fit.startswith('Steady states ')
     assert any('one tow only' in sentence for sentence in single.concerns)
     assert not any('one tow only' in sentence for sentence in several.concerns)
 
@@ -193,11 +193,9 @@ def test_a_fit_that_predicts_badly_is_called_so(tows):
     bad = replace(good, held_out=replace(good.held_out, predicted=1.06 * good.measured))
     judged = verdict(bad)
     assert not judged.holds
-    assert judged.fit.endswith(
-        'worse than the paper fits its own points in door spread and door depth and warp tension.'
-    )
+    assert judged.fit.endswith('in door spread and door depth and warp tension.')
     fair = replace(good, held_out=replace(good.held_out, predicted=1.02 * good.measured))
-    assert 'no more than the paper has' in verdict(fair).fit
+    assert 'no more than' in verdict(fair).fit
 
 
 def test_what_speaks_against_a_fit_is_listed(tows):
@@ -247,9 +245,9 @@ def test_the_page_needs_nothing_beside_it_and_begins_with_the_verdict(sea, tows,
     assert set(sources) == {'data:image/png;base64,'}
     body = text[text.index('<h1>') :]
     assert body.index(verdict(found).fit) < body.index('<h2>')
-    assert body.index('900 m at 2.0 m/s') > body.index('What to tow next')
+    assert body.index('900 m at 2.0 m/s') > body.index('<h2>What to tow next')
     assert REASONS['outlier'] in text
-    assert 'What to tow next' not in report_page(found, [])
+    assert '<h2>What to tow next' not in report_page(found, [])
     named = replace(found, found={'outlier': '<script>'})
     hostile = report_page(named, [], ['<script>'])
     assert '<script' not in hostile
@@ -276,4 +274,5 @@ def test_tables_and_lines_for_the_console(sea, tows):
     text = console.export_text()
     for word in ('a1', 'c6', 'truth', 'door spread', 'tows held out', 'Objective of eq. 35'):
         assert word in text
-    assert '15 steady windows of 3 tows' in text
+    assert '15 steady windows' in text
+    assert '3 tows' in text

@@ -46,15 +46,16 @@ def test_a_true_log_is_not_accused_in_any_current(current):
 
 
 def test_a_log_over_ground_is_told_on_two_headings():
-    assert 'no current along the ship' in verdict('bottom', [0.0, 1.5], (0.0, 0.4))
+    assert 'no current' in verdict('bottom', [0.0, 1.5], (0.0, 0.4))
 
 
-def test_one_heading_alone_tells_nothing():
-    assert verdict('bottom', [0.0, 0.0, 0.0], (0.0, 0.4)) is None
-
-
-def test_without_current_a_log_over_ground_is_as_good():
-    assert verdict('bottom', [0.0, 1.5, 3.0], (0.0, 0.0)) is None
+@pytest.mark.parametrize(
+    ('headings', 'current'),
+    [([0.0, 0.0, 0.0], (0.0, 0.4)), ([0.0, 1.5, 3.0], (0.0, 0.0))],
+    ids=['one heading alone', 'no current'],
+)
+def test_where_a_log_over_ground_cannot_be_told_or_is_as_good_nothing_is_said(headings, current):
+    assert verdict('bottom', headings, current) is None
 
 
 @pytest.mark.parametrize('current', [(0.0, 0.0), (0.4, 0.0)])

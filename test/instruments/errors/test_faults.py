@@ -64,17 +64,11 @@ def test_lost_is_not_a_number() -> None:
     assert np.isnan(faulty('lost')).all()
 
 
-def test_offset_is_added() -> None:
-    np.testing.assert_allclose(faulty('offset -3.5'), SOUND[ON, 0] - 3.5, atol=0.051)
-
-
-def test_scale_multiplies() -> None:
-    np.testing.assert_allclose(faulty('scale 1.02'), SOUND[ON, 0] * 1.02, atol=0.11)
-
-
-def test_drift_begins_with_the_fault() -> None:
-    seconds = np.arange(300) / 2
-    np.testing.assert_allclose(faulty('drift 360'), SOUND[ON, 0] + 0.1 * seconds, atol=0.11)
+def test_offset_is_added_scale_multiplies_and_drift_begins_with_the_fault() -> None:
+    sound, seconds = SOUND[ON, 0], np.arange(300) / 2
+    np.testing.assert_allclose(faulty('offset -3.5'), sound - 3.5, atol=0.051)
+    np.testing.assert_allclose(faulty('scale 1.02'), sound * 1.02, atol=0.11)
+    np.testing.assert_allclose(faulty('drift 360'), sound + 0.1 * seconds, atol=0.11)
 
 
 def test_noise_has_the_size_that_is_asked_for() -> None:

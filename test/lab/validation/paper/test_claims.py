@@ -23,10 +23,9 @@ def test_only_what_fails_is_told_why() -> None:
     assert 'a growth: 0.2 m (≥ 0 m)' in gives
     assert 'a size: 3 % (5 to 10 %)' in gives
     assert why == 'it is small.'
-    assert [check.note for check in both.checks] == [
-        'Section IV.C, Fig. 9: it grows by 5-10 %.',
-        'it is small.',
-    ]
+    first, second = (check.note for check in both.checks)
+    assert 'IV.C, Fig. 9: it grows' in first
+    assert second == 'it is small.'
 
 
 def test_what_could_not_be_measured_does_not_hold() -> None:

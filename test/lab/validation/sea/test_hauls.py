@@ -65,7 +65,7 @@ def test_every_haul_can_be_rigged_and_has_a_source(published: PublishedHauls) ->
 def test_a_weight_that_the_gear_has_not_is_named(published: PublishedHauls) -> None:
     haul = published.gears[0].hauls[1]
     kaifuha = load_gear('kaifuha')
-    with pytest.raises(TrawlError, match=r'haul 900 m of kaifuha.*found front weight'):
+    with pytest.raises(TrawlError, match=r'haul 900 m.*kaifuha.*front weight'):
         haul.rigged(kaifuha)
 
 
@@ -79,7 +79,7 @@ def test_points_that_tuned_a_gear_do_not_count(published: PublishedHauls) -> Non
 @pytest.mark.parametrize(
     ('change', 'message'),
     [
-        ({'tuned': 'nothing'}, 'found tunes, where nothing is tuned'),
+        ({'tuned': 'nothing'}, 'found tunes'),
         ({'source': 'hearsay'}, 'found none named hearsay'),
         ({'hauls': 2}, 'expected each once'),
     ],
@@ -149,10 +149,10 @@ def test_ratios_and_slopes_are_of_the_models_own_changes(published: PublishedHau
 @pytest.mark.parametrize(
     ('kind', 'message'),
     [
-        ({}, 'found none, expected one of'),
-        ({'sign': 1, 'ratio': 1.2}, 'found sign, ratio, expected one of'),
-        ({'slope': 1.0}, 'per: expected with a slope'),
-        ({'sign': 1, 'per': 'warp_m'}, 'per: expected with a slope'),
+        ({}, 'found none'),
+        ({'sign': 1, 'ratio': 1.2}, 'found sign, ratio'),
+        ({'slope': 1.0}, 'per: .* slope'),
+        ({'sign': 1, 'per': 'warp_m'}, 'per: .* slope'),
     ],
 )
 def test_a_trend_is_of_one_kind(kind: dict[str, object], message: str) -> None:

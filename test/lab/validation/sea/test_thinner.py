@@ -28,13 +28,11 @@ def test_the_net_has_so_much_less_twine_and_all_of_it_from_small_meshes(off: flo
         assert before.twine_length == after.twine_length
 
 
-def test_more_twine_than_there_is_cannot_be_taken_off() -> None:
-    with pytest.raises(
-        TrawlError, match=r'haul h of krill_1420: thinner.*expected less than 0\.185'
-    ):
-        rigged(load_gear('krill_1420'), ThinnerRecord(mesh_up_to_mm=9, area_off=0.5))
-
-
-def test_a_net_without_a_plan_is_named() -> None:
-    with pytest.raises(TrawlError, match='haul h of kaifuha: thinner: found a net without a plan'):
-        rigged(load_gear('kaifuha'), ThinnerRecord(mesh_up_to_mm=9, area_off=0.1))
+@pytest.mark.parametrize(
+    ('gear', 'area_off', 'words'),
+    [('krill_1420', 0.5, r'thinner.* 0\.185'), ('kaifuha', 0.1, 'thinner: .*plan')],
+    ids=['too much twine', 'no plan'],
+)
+def test_what_cannot_be_taken_off_is_refused(gear: str, area_off: float, words: str) -> None:
+    with pytest.raises(TrawlError, match=f'{gear}: {words}'):
+        rigged(load_gear(gear), ThinnerRecord(mesh_up_to_mm=9, area_off=area_off))
