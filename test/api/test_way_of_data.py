@@ -26,7 +26,7 @@ BELOW = {
 
 STAGES = (
     ('api/trials.py', 'diagnose'),
-    ('bags/reader.py', 'passing'),
+    ('bags/reader.py', 'messages'),
     ('estimation/windows/finder.py', 'feed'),
     ('diagnosis/procedure.py', 'diagnose_windows'),
     ('estimation/fit/line_search.py', 'line_search'),

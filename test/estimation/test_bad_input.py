@@ -239,7 +239,8 @@ def clean(clean_tow):
 def test_the_clean_tow_gives_all_states_and_no_complaint(clean):
     assert [window.state for window in used(clean)] == [0, 1, 2]
     assert set(clean.rejected) <= {'unsteady', 'turning', 'outlier'}
-    assert clean.rejected.get('outlier', 0) <= 1
+    # Of some thousand readings of 14 channels.
+    assert clean.rejected.get('outlier', 0) <= 2
     assert all(window.track is not None for window in used(clean))
 
 

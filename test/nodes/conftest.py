@@ -230,12 +230,19 @@ def steady_samples(steady_tow):
     """
     from dataclasses import replace
 
-    from trawl_ros.records.samples import HeadingSample, RangeSample, VelocitySample
+    from trawl_ros.records.samples import (
+        HeadingSample,
+        RangeSample,
+        VelocitySample,
+        WarpAngleSample,
+    )
+    from trawl_ros.records.truth import SIDES
 
     second = 1_000_000_000
 
     def samples(start: int, leg_s: int, **kwargs: int) -> list:
         found = []
+        angles = np.random.default_rng(7)
         for sample in steady_tow.samples(start=start, leg_s=leg_s, **kwargs):
             if isinstance(sample, VelocitySample):
                 found.append(replace(sample, yaw_rate=0.0))
@@ -248,6 +255,16 @@ def steady_samples(steady_tow):
                 if (sample.stamp - start) % (10 * second) == 5 * second:
                     height = RangeSample(sample.stamp, 'opening_height', 40.0, 1.0, 1.0, 300.0)
                     found.append(height)
+                seen = steady_tow.states[(sample.stamp - start) // second // leg_s][2]
+                found += [
+                    WarpAngleSample(
+                        sample.stamp,
+                        side,
+                        getattr(seen, f'{side}_divergence') + 0.005 * angles.standard_normal(),
+                        getattr(seen, f'{side}_declination') + 0.005 * angles.standard_normal(),
+                    )
+                    for side in SIDES
+                ]
             else:
                 found.append(sample)
         return found

@@ -11,10 +11,11 @@ from trawl_ros.nodes.towing import DEFAULT_START, OTHER_STARTS, commanded_tow
 
 @pytest.fixture(scope='module')
 def slow_log(gear):
-    """A gear whose log shows too much, so that it falls at what seems 2 m/s."""
-    bias = EffectRecord(name='speed_log', values={'bias': 0.3})
+    """A gear with heavy boards and a log that shows too much: it falls at what seems 2 m/s."""
+    bias = EffectRecord(name='speed_log', values={'bias': 0.8})
     netting = gear.netting.model_copy(update={'around': 12})
-    return gear.model_copy(update={'netting': netting, 'effects': (bias,)})
+    heavy = gear.board.model_copy(update={'mass_kg': 5200.0})
+    return gear.model_copy(update={'board': heavy, 'netting': netting, 'effects': (bias,)})
 
 
 def test_it_starts_where_the_gear_can_be_towed_and_says_so(slow_log):

@@ -33,7 +33,7 @@ from trawl_ros.nodes.runtime.qos import CONSUMER, LATCHED, STREAM
 from trawl_ros.nodes.runtime.reading import Reached, Rewinding
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.workers.proposals import read_knowledge
-from trawl_ros.nodes.workers.settings import TRIAL_SPECS, trial_settings
+from trawl_ros.nodes.workers.trial_settings import TRIAL_SPECS, trial_settings
 from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import RangeSample
 from trawl_ros.records.topics import SYNC
