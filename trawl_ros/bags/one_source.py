@@ -1,5 +1,12 @@
-"""Two sources on one topic: their channels or stamps differ, or their readings alternate;
-and clocks that look like two sources, as they stand still or were set back.
+"""Detection of two sources on one topic, and of clocks that only look like two sources.
+
+The channels or stamps of two sources differ, or their readings alternate. A clock that stands still
+or was set back can look like two sources.
+
+A publisher leaves no name in a bag. A topic has two sources if its readings do what one source
+cannot do: alternate between two channels, give two readings for one time, go back in time
+repeatedly, jump between two courses at every reading, or give readings on a second course in
+addition to those that the rate asks for.
 
 A publisher leaves no name in a bag. That there are two is known from what one cannot do: come by
 turns from two channels, give two readings for one time, go back in time again and again, jump
@@ -232,8 +239,9 @@ def _visits(stamps: StampArray, readings: FloatArray) -> int:
 
 
 def _beside(times: FloatArray, values: FloatArray) -> int:
-    """Count the readings (n,) on courses (n, k) that stand out from one, upward or downward, if
-    they are a source of their own; else 0.
+    """Count the readings that stand out from a course and form a source of their own, else 0.
+
+    ``values`` (n, k) hold k courses. Readings stand out upward or downward.
     """
     if len(values) < 2 * VISITS:
         return 0
@@ -250,9 +258,7 @@ def _beside(times: FloatArray, values: FloatArray) -> int:
 
 
 def _on_second(times: FloatArray, values: FloatArray, chosen: BoolArray) -> int:
-    """Count the ``chosen`` (n - 2,) of the inner ones of values (n,), if they are a source of their
-    own; else 0.
-    """
+    """Count the ``chosen`` (n - 2,) of the inner ``values`` if they form a source, else 0."""
     # Values that stand out of noise come at any time.
     if not _alike(np.diff(times[1:-1][chosen])):
         return 0

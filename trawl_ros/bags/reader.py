@@ -24,8 +24,20 @@ from trawl_ros.records.topics import NAMESPACE, find_topic
 
 @dataclass(frozen=True)
 class Received:
-    """Decoded message: full topic name, type, log time (ns), the message, its channel, and its
-    number of arrival (0 where it is not known).
+    """Decoded message of a bag.
+
+    Attributes
+    ----------
+    topic, type
+        Full topic name and message type.
+    log_time
+        Time of recording, ns.
+    message
+        The decoded message.
+    channel
+        Number of the channel.
+    sequence
+        Number of arrival, 0 if unknown.
     """
 
     topic: str

@@ -44,8 +44,10 @@ _FISH = ros.std_msgs__msg__ColorRGBA(0.95, 0.65, 0.40, 0.5)
 
 
 def gear_markers(picture: GearPicture) -> TopicMessage:
-    """Draw the gear in ``map``: a line per rope, all netting in one marker, a box per door, and
-    the ship's waterline ahead of the towing blocks; and an ellipsoid per school of fish.
+    """Draw the gear in the frame ``map``.
+
+    A rope becomes a line, all netting one marker, a door a box, a school of fish an ellipsoid. The
+    ship's waterline lies ahead of the towing blocks.
 
     Lines that share a name become one marker, since a viewer takes two thousand points in its
     stride but not a thousand markers. ``picture.door_size`` is (length along the door's x,

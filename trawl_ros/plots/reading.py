@@ -218,8 +218,9 @@ def _continuous(angles: FloatArray) -> FloatArray:
 
 
 def _completed(truth: dict[str, Series]) -> dict[str, Series]:
-    """Truth that says something; where the sonar's own view of the opening is not there, the
-    height at the headrope's centre stands for it.
+    """Truth without series that hold no values.
+
+    If the sonar's own opening height is missing, the height at the headrope's centre replaces it.
     """
     known = {name: series for name, series in truth.items() if np.isfinite(series.values).any()}
     if 'centre_height' in known:

@@ -54,8 +54,10 @@ def track_figure(tow: TowHistory) -> Figure | None:
 
 
 def fixes_on_map(tow: TowHistory) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Times (s), east and north (m) of the fixes; the first valid one lies where truth had it,
-    or at the origin, for a bag does not say where ``map`` is on Earth.
+    """Times (s), east and north (m) of the fixes on the map.
+
+    A bag does not say where ``map`` is on Earth. The first valid fix is therefore placed where
+    truth had it, or at the origin.
     """
     if 'latitude' not in tow.measured:
         return None

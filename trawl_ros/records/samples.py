@@ -67,8 +67,9 @@ class AttitudeSample:
 
 @dataclass(frozen=True)
 class WarpAngleSample:
-    """Angles of a warp at its towing block: divergence (outward positive, against the ship's
-    course) and declination (down positive), rad.
+    """Angles of a warp at its towing block, rad.
+
+    ``divergence`` is positive outward from the ship's course, ``declination`` positive downward.
     """
 
     stamp: int
@@ -154,8 +155,10 @@ class SonarImageSample:
 
 @dataclass(frozen=True)
 class SonarScanSample:
-    """First echo per beam of a sweep: ``ranges`` (beams,) m, infinite without one, and
-    ``intensities`` (beams,), 0 to 255.
+    """First echo of each beam of a sweep.
+
+    ``ranges`` (beams,), in m, are infinite without an echo. ``intensities`` (beams,) are from 0 to
+    255.
 
     Beam i looks at ``angle_min`` + i ``angle_increment`` (rad about z of frame ``sonar``, 0 down,
     to port positive); ``sweep_s`` is how long the sweep took.

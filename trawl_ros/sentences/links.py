@@ -41,8 +41,9 @@ class LinkClock:
         self._interval = SECOND
 
     def hear(self, said: int, arrived: int) -> bool:
-        """Take the time (ns) of a sentence that arrived at a monotonic time (ns); false if it
-        leaps, and is not believed yet.
+        """Take the time (ns) of a sentence that arrived at a monotonic time (ns).
+
+        Return False if the time leaps and is not believed yet.
         """
         if not self._leaps.take(said - arrived, None)[0]:
             return False

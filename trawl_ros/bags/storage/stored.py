@@ -11,8 +11,20 @@ from trawl_ros.messages.cdr import STORE, message_definition, type_hash
 
 
 class RawMessage(NamedTuple):
-    """Raw message of a bag: full topic name, type, times in ns, CDR bytes, channel, and number of
-    arrival (0 where it is not known).
+    """Raw message of a bag.
+
+    Attributes
+    ----------
+    topic, type
+        Full topic name and message type.
+    log_time, publish_time
+        Times of recording and of publication, ns.
+    data
+        The message in CDR.
+    channel
+        Number of the channel.
+    sequence
+        Number of arrival, 0 if unknown.
     """
 
     topic: str

@@ -109,8 +109,10 @@ class CoordinateSearch:
         self.solves = 0
 
     def search(self, target: float, budget: int) -> Searched:
-        """Search until the objective is no worse than ``target``, steps are short, or
-        ``budget`` steady states were solved.
+        """Search until the target or the budget is reached, or the steps become short.
+
+        ``target`` is the objective to reach, ``budget`` the number of steady states that may be
+        solved.
         """
         prior = self._prior
         best = np.array(prior.start)

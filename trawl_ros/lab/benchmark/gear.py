@@ -34,8 +34,10 @@ REAL_TIME, OVER_MOORDYN = 300.0, 5.0
 
 @dataclass(frozen=True)
 class Run:
-    """Run of the manoeuvre at one step: its error (None when a step failed), times real time, and
-    factorisations per step.
+    """Run of the manoeuvre at one step size.
+
+    ``error`` is None if a step failed. ``factor`` is the speed in times real time, and
+    ``factorisations`` the mean number per step.
     """
 
     step_s: float

@@ -31,10 +31,24 @@ STEP_S = 0.2
 
 @dataclass(frozen=True)
 class GrowthSize:
-    """One refinement: its ``nodes`` in the net, and CPU times (s) of a time step, a steady
-    state from a known one 20 m of warp away, found in so many ``iterations``, and one factorisation
-    with its solution.
-    ``factor_mb`` is the size of the factors, ``peak_mb`` the most that the process ever held.
+    """Costs of one refinement of the net.
+
+    Attributes
+    ----------
+    around
+        Meshes around the mouth.
+    nodes
+        Nodes in the net.
+    step_s
+        CPU time of a time step, s.
+    warm_s, iterations
+        CPU time (s) and iterations of a steady state, started from one with 20 m less warp.
+    factor_s
+        CPU time of one factorisation and its solution, s.
+    factor_mb
+        Size of the factors, MB.
+    peak_mb
+        Peak memory of the process, MB.
     """
 
     around: int

@@ -48,8 +48,10 @@ WATCHED = (
 
 @dataclass(frozen=True)
 class Ride:
-    """Ride through the manoeuvre: ``seen`` (n, n_watched) are the observables of `WATCHED`, each
-    ``every_s`` seconds from the first such on; ``factorisations`` of the stepper's matrix.
+    """Observables seen during one run of the manoeuvre.
+
+    ``seen`` (n, n_watched) holds the observables of `WATCHED`, one row every ``every_s`` seconds.
+    ``factorisations`` counts those of the stepper's matrix.
     """
 
     seen: FloatArray
@@ -64,8 +66,9 @@ class Ride:
 
 @dataclass(frozen=True)
 class HaulManoeuvre:
-    """Haul: manoeuvre of one gear, by its start and the towing boundary every
-    `FINEST_S` seconds from the start on.
+    """Hauling manoeuvre of one gear.
+
+    ``start`` is its motion at the start, and ``tows`` its towing boundary every `FINEST_S` seconds.
     """
 
     model: GearModel
@@ -139,9 +142,10 @@ def _tows(model: GearModel, gear: GearRecord, steps: int) -> tuple[Tow, ...]:
 
 @dataclass(frozen=True)
 class Error:
-    """Largest difference of a run from the converged one: of any watched observable, as a
-    share of the range it goes through (``of_range``) and of its mean size (``of_value``).
-    ``worst`` is the observable with the largest share of its range.
+    """Largest difference of any watched observable between a run and the converged run.
+
+    ``of_range`` is a share of the range of the observable during the manoeuvre, ``of_value`` a
+    share of its mean magnitude. ``worst`` names the observable with the largest share of its range.
     """
 
     of_range: float

@@ -106,8 +106,9 @@ class PlantTow:
 def tow_plant(
     plant: GearRecord, added_mass: float, seed: int, duration_s: float = DURATION_S
 ) -> PlantTow:
-    """Tow a plant along `COURSE` and read it by the instruments that come with the package, of
-    which every command changes what stays wrong.
+    """Tow a plant along `COURSE` and read it with the default instruments.
+
+    The slowly varying part of each instrument's error changes with every command.
 
     Raises
     ------

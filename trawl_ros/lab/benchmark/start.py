@@ -37,8 +37,9 @@ HEAVIEST = 4
 
 @dataclass(frozen=True)
 class Start:
-    """Start of a node: the topic of its first message, its parameters, and its need of a running
-    simulation for that message.
+    """Node to start, with the topic of its first message.
+
+    ``needs_truth`` is true if the node publishes nothing without a running simulation.
     """
 
     node: str
@@ -49,8 +50,9 @@ class Start:
 
 @dataclass(frozen=True)
 class Begun:
-    """Wall-clock time (s) to the first message of a node, and its resident memory (MB) then; the
-    time is infinite, the memory NaN, where no message came.
+    """Wall-clock time (s) to the first message of a node, and its resident memory (MB) then.
+
+    Without a message the time is infinite and the memory NaN.
     """
 
     seconds: float

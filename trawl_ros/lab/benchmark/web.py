@@ -49,8 +49,9 @@ class Stable:
 
 
 def moordyn_web_factor(small: bool) -> float:
-    """Times real time that MoorDyn reaches on a web of as many lines and points as the gear,
-    its doors prescribed, by its best scheme at its largest stable step.
+    """Speed of MoorDyn in times real time, on a web of as many lines and points as the gear.
+
+    The doors are prescribed. MoorDyn runs its best scheme at the largest stable step.
 
     Raises
     ------
@@ -64,8 +65,9 @@ def moordyn_web_factor(small: bool) -> float:
 
 
 def measure(small: bool) -> Findings:
-    """Find the largest stable step of each scheme, and time it. A scheme that is stable at no
-    step that is tried has no row.
+    """Find the largest stable step of each scheme, and time it.
+
+    A scheme without a stable step among those tried has no row.
     """
     what = 'MoorDyn on a web of as many lines and points as the gear'
     try:

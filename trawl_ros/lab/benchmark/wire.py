@@ -37,8 +37,10 @@ SETTLING = 200.0
 
 @dataclass(frozen=True)
 class SchemeChoice:
-    """MoorDyn's scheme with the inner damping of the wire (s) that lets it take its longest
-    steps, and steps to try (s), from long to short.
+    """Scheme of MoorDyn with the settings that allow its longest steps.
+
+    ``damping_time`` (s) is the internal damping of the wire that allows them. ``steps`` (s) are the
+    steps to try, from long to short.
     """
 
     scheme: str
@@ -57,9 +59,7 @@ steps that leave them slower, and the multistep ones break down."""
 
 @dataclass(frozen=True)
 class Fastest:
-    """The longest step (s) within the limit, its error, and how many times faster than real time
-    it is.
-    """
+    """Longest step (s) within the error limit, with its error and its speed in times real time."""
 
     step: float
     error: float

@@ -36,8 +36,9 @@ class History:
 
 @dataclass(frozen=True)
 class Apart:
-    """Largest and root-mean-square difference over time, as shares of the reference's value at
-    the same instant.
+    """Largest and root-mean-square differences over time.
+
+    They are shares of the reference's value at the same instant.
     """
 
     depth: float
@@ -52,8 +53,10 @@ class Apart:
 
 
 def apart(history: History, reference: History) -> Apart:
-    """Compare two histories at the instants of the coarser one; values of the finer one are
-    interpolated linearly. NaN, where a program broke down, counts as infinitely far.
+    """Compare two histories at the instants of the coarser one.
+
+    Values of the finer history are interpolated linearly. NaN, where a program broke down, counts
+    as an infinite difference.
     """
     times = min((history, reference), key=lambda one: len(one.times)).times
     shares = []

@@ -13,8 +13,22 @@ TURN_RATE = float(np.radians(0.5))
 
 @dataclass(frozen=True)
 class Pace:
-    """Smooth ramp: a rate that rises to ``top`` in ``rise`` seconds, stays, and falls likewise, so
-    that ``total`` is covered; it starts at ``start`` (s).
+    """Rate that rises smoothly, stays constant, and falls smoothly.
+
+    Attributes
+    ----------
+    start
+        Time at which it starts, s.
+    total
+        Integral of the rate over time.
+    top
+        Largest rate.
+    rise
+        Duration of the rise, and of the fall, s.
+
+    Notes
+    -----
+    The rise is half a cosine wave: a winch or a rudder gives no jerk that would ring in the wire.
 
     It swells as half a cosine wave, for a winch or a rudder gives no jerk that would ring in
     the wire.

@@ -56,9 +56,10 @@ class MoorDyn:
     def step(
         self, places: FloatArray, velocities: FloatArray, time: float, step: float
     ) -> FloatArray:
-        """Advance by ``step`` seconds from ``time``, with the coupled points at ``places``
-        (c, 3) at its start and moving with ``velocities`` (c, 3) throughout; forces (c, 3) on
-        them at its end, in N.
+        """Advance by ``step`` seconds from ``time``, and return the forces on the coupled points.
+
+        The coupled points start at ``places`` (c, 3) and move with ``velocities`` (c, 3)
+        throughout. The forces (c, 3), in N, are those at the end of the step.
 
         Raises
         ------
@@ -72,8 +73,9 @@ class MoorDyn:
         return np.reshape(force, (-1, 3))
 
     def restart(self, places: FloatArray, velocities: FloatArray) -> None:
-        """Set all points, (p, 3) m in their order, and their velocities, (p, 3) m/s; those that
-        are coupled stay where they are. For lines of one segment this is the whole state.
+        """Set the places (p, 3), in m, and the velocities (p, 3), in m/s, of all points.
+
+        Coupled points stay where they are. For lines of one segment this is the whole state.
         """
         file = Path(self._folder.name) / 'state'
         self._module.SaveState(self._system, str(file))

@@ -45,8 +45,18 @@ class Point:
 
 @dataclass(frozen=True)
 class Line:
-    """Line between the points ``start`` and ``end``, counted from 0, of the type ``kind``,
-    counted from 0, with an unstretched ``length`` (m), in ``segments``.
+    """Line between two points.
+
+    Attributes
+    ----------
+    kind
+        Index of its line type, from 0.
+    start, end
+        Indices of its points, from 0.
+    length
+        Unstretched length, m.
+    segments
+        Number of segments.
     """
 
     kind: int
@@ -58,8 +68,16 @@ class Line:
 
 @dataclass(frozen=True)
 class Options:
-    """Solver options: MoorDyn's name of the ``scheme`` and its ``step`` (s), in water of a
-    density (kg/m³) under gravity (m/s²).
+    """Solver options of MoorDyn, and the water.
+
+    Attributes
+    ----------
+    scheme
+        MoorDyn's name of the time scheme.
+    step
+        Time step, s.
+    density, gravity
+        In kg/m³ and m/s².
     """
 
     scheme: str

@@ -19,8 +19,10 @@ COUPLED = 8
 
 @dataclass(frozen=True)
 class Web:
-    """Web in tow: each bar of a gear is a line of one segment, each node a free point, and
-    fastening points and blocks are coupled ones.
+    """Web of single-segment lines in tow.
+
+    Each bar of a gear is a line of one segment, and each node a free point. Fastening points and
+    towing blocks are coupled points.
 
     Attributes
     ----------

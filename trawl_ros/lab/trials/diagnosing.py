@@ -32,8 +32,18 @@ def read_windows(path: Path) -> tuple[SteadyWindow, ...]:
 
 @dataclass(frozen=True)
 class DiagnosisTask:
-    """Case of a blind diagnosis: visible data, file of the result, gear file as it is known aboard,
-    and how many of the first tows are a baseline.
+    """Case of a blind diagnosis.
+
+    Attributes
+    ----------
+    seen
+        Visible data.
+    diagnosis
+        File of the result.
+    gear
+        Gear file as it is known aboard.
+    baseline
+        Number of first tows that form the baseline.
     """
 
     seen: Path

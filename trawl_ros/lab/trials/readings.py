@@ -21,8 +21,9 @@ CORRELATION_S = 15.0
 
 @dataclass(frozen=True)
 class SensorKind:
-    """Kind of sensor: readings per second, and the standard deviations of their white and
-    their correlated noise.
+    """Readings per second of a kind of sensor, and the standard deviations of its noise.
+
+    The noise has a ``white`` and a ``correlated`` part.
     """
 
     rate_hz: float
@@ -84,8 +85,10 @@ NAMES = (*SENSED, *INPUTS)
 
 @dataclass(frozen=True)
 class Sensors:
-    """Sensors: factors of the true noise and biases of each quantity over the stated ones, and the
-    part of a bias that changes with the state as `Scheme` has it.
+    """Sensors of a trial.
+
+    ``factors`` multiply the stated noise and biases of each quantity. ``state_share`` is the part
+    of a bias that changes with the state, as in `Scheme`.
     """
 
     factors: Mapping[str, float]

@@ -68,8 +68,10 @@ def right(trial: Scored, names: set[str], classes: Classes) -> bool:
 
 
 def right_names(hidden: str, classes: Classes) -> set[str]:
-    """Names that count as right for what is hidden: its own, or that of its cause; with classes,
-    and changes of the gear file that are the cause.
+    """Names that count as right for a hidden effect.
+
+    These are its own name or that of its cause, all of the same class, and the changes of the gear
+    file that are the cause.
     """
     own = RIGHT_NAMES.get(hidden, (hidden,))
     alike = (other for name in own for other in classes.get(name, ()))
@@ -138,9 +140,7 @@ def parted(trial: Scored) -> bool:
 
 
 def checked(trial: Scored, classes: Classes) -> bool:
-    """True if the right effect is among those left, and all of these but one have a check that
-    needs no tow.
-    """
+    """True if the right effect is left, and all those left but one have a check without a tow."""
     left = reported(trial) & set(catalogue())
     unchecked = [name for name in left if not catalogue()[name].direct]
     return right(trial, left, classes) and len(unchecked) <= 1

@@ -1,5 +1,6 @@
-"""Causes on deck: hidden by changing keys of the plant's gear file, or one side of
-its gear, or its instruments; with the names that count as right, fixed before any trial is made.
+"""Hidden causes on deck, with the names that count as right, fixed before any trial is made.
+
+A cause changes keys of the plant's gear file, one side of its gear, or its instruments.
 """
 
 from collections.abc import Callable, Mapping

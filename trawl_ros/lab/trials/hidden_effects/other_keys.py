@@ -1,5 +1,6 @@
-"""Causes on deck that the catalogue does not have, hidden by changing keys of the gear file, with
-the changes of the gear file that count as right beside a name.
+"""Hidden causes on deck that the catalogue of effects does not have.
+
+They change keys of the gear file. Certain changes of the gear file also count as right names.
 """
 
 from collections.abc import Mapping

@@ -43,8 +43,9 @@ ANYWHERE = (-pi, pi), (radians(-85.0), radians(85.0))
 
 @dataclass(frozen=True)
 class LoadDifferences:
-    """Largest differences as shares of the force and of the moment; ``attack`` the least and
-    the largest attack angle (rad) that was met.
+    """Largest differences, as shares of the force and of the moment.
+
+    ``attack`` holds the smallest and largest attack angles (rad) that occurred.
     """
 
     force: float

@@ -56,8 +56,10 @@ def hanging(segments: int, load: float = 0.0) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Sagging:
-    """``places`` (n, 3) of points equally far apart along a wire, m, and its pull (2, 3) on
-    both holds, N.
+    """Shape and end forces of a sagging wire.
+
+    ``places`` (n, 3) are points at equal distances along the wire, m. ``pulls`` (2, 3) are its
+    forces on both supports, N.
     """
 
     places: FloatArray

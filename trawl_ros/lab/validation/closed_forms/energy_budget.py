@@ -81,10 +81,20 @@ class BudgetInstant:
 
 @dataclass(frozen=True)
 class Budget:
-    """``times`` (k,) s, of ``steps`` steps and the halves of those that were halved; ``works``
-    (k, 10) J done until then in the order of `WORKS`; ``stores`` (k, 3) J more than at first in
-    the order of `STORES`; ``drum`` J that winches which take the wire in at the block would have
-    done.
+    """Energy budget of a manoeuvre.
+
+    Attributes
+    ----------
+    times : (k,) array
+        Ends of all steps, s; a step that was halved has more.
+    works : (k, 10) array
+        Work done until then, J, in the order of `WORKS`.
+    stores : (k, 3) array
+        Energy gained until then, J, in the order of `STORES`.
+    drum
+        Work of winches that take the wire in at the towing block, J.
+    steps
+        Number of steps, not counting halves.
     """
 
     times: FloatArray

@@ -34,9 +34,17 @@ RATES = 0.2 * np.array([[1.0, 0.01, 0.02], [0.4, 0.5, 0.6]])
 
 @dataclass(frozen=True)
 class Spin:
-    """``times`` (k,) s; ``momentum`` and ``energy`` (k,): how far the boards' angular momentum
-    (length of the difference, the worse of both) and their kinetic energy are from the first,
-    as shares of it; ``upright`` (k, 2) cosine between each board's z axis and its first.
+    """Conservation of momentum and energy of freely rotating boards.
+
+    Attributes
+    ----------
+    times : (k,) array
+        In s.
+    momentum, energy : (k,) arrays
+        Changes of the angular momentum (length of the difference vector, larger of both boards) and
+        of the kinetic energy, as shares of the initial values.
+    upright : (k, 2) array
+        Cosine of the angle between each board's z axis and its initial direction.
     """
 
     times: FloatArray
@@ -66,8 +74,10 @@ def spinning() -> tuple[GearModel, State, Tow]:
 
 
 def momentum_and_energy(model: GearModel, state: State) -> tuple[FloatArray, float]:
-    """Angular momentum (2, 3) about the centres of gravity, N m s, and kinetic energy of both
-    boards, J, from the gear file's inertia in each board's own axes.
+    """Angular momentum (2, 3), in N m s, and kinetic energy (J) of both boards.
+
+    The momentum is about the centres of gravity. Both come from the gear file's inertia, in the
+    board's own axes.
     """
     about = model.gear.board.inertia
     momentum, energy = np.zeros((2, 3)), 0.0

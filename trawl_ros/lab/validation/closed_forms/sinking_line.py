@@ -29,9 +29,16 @@ SECONDS = 8.0
 
 @dataclass(frozen=True)
 class Sinking:
-    """``times`` (k,) s; ``velocities`` (k, 2) m/s of the line's middle along the line and
-    across it, downward both; ``uneven`` is the largest difference between two nodes' velocities
-    at the end, m/s.
+    """Velocities of a sinking line.
+
+    Attributes
+    ----------
+    times : (k,) array
+        In s.
+    velocities : (k, 2) array
+        Velocity of the line's middle along the line and across it, downward positive, m/s.
+    uneven
+        Largest difference between the velocities of two nodes at the end, m/s.
     """
 
     times: FloatArray

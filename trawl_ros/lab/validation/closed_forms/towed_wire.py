@@ -32,8 +32,16 @@ CLAIMED = 20
 
 @dataclass(frozen=True)
 class Wire:
-    """Depth and lag (m) of the wire's lower end, pull (N) at its upper one; ``places`` (n, 2)
-    ahead and up (m) of points equally far apart along it, the block first.
+    """Steady state of a towed wire.
+
+    Attributes
+    ----------
+    depth, lag
+        Depth of the lower end, and its distance behind the block, m.
+    tension
+        At the upper end, N.
+    places : (n, 2) array
+        Points at equal distances along the wire, from the block on: ahead and up, m.
     """
 
     depth: float

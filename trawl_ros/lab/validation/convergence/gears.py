@@ -61,8 +61,10 @@ def _solved(model: GearModel, length: float, start: Equilibrium | None) -> Equil
 
 
 def differences(seen: FloatArray, fine: FloatArray) -> FloatArray:
-    """Differences from the finer gear as shares: of its value, or of `REFERENCE` for angles
-    around zero. All arrays end with the observables.
+    """Differences from the finer gear, as shares of its value.
+
+    Angles around zero are compared with `REFERENCE` instead. The last axis of each array runs over
+    the observables.
     """
     around = np.array([name.endswith(AROUND_ZERO) for name in OBSERVABLES])
     return (seen - fine) / np.where(around, REFERENCE, np.abs(fine))

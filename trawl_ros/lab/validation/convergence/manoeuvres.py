@@ -28,9 +28,18 @@ GAIN = 0.2
 
 @dataclass(frozen=True)
 class SteppedManoeuvre:
-    """A manoeuvre at one time step: ``seen`` (samples, observables) and ``places`` (samples,
-    nodes and boards, 3) of all nodes and boards, m; ``tension`` is the lowest of any bar at any of
-    the samples, N.
+    """A manoeuvre at one time step.
+
+    Attributes
+    ----------
+    step
+        Time step, s.
+    seen : (samples, observables) array
+        Observables.
+    places : (samples, nodes and boards, 3) array
+        Places of all nodes and boards, m.
+    tension
+        Lowest tension of any bar at any sample, N.
     """
 
     step: float
@@ -40,8 +49,10 @@ class SteppedManoeuvre:
 
 
 def smooth_tow(model: GearModel, tow: Tow, t: float, duration: float) -> Tow:
-    """Towing boundary at a time when both winches haul with one wave of a cosine,
-    up to their largest speed and back to rest, and the ship gains speed with half of one.
+    """Towing boundary at a time of a smooth manoeuvre.
+
+    Both winches haul at a rate of one cosine wave, from rest to their largest speed and back. The
+    ship gains speed along half a cosine wave.
     """
     wave = 2 * np.pi * t / duration
     hauled = 0.5 * model.gear.winch.max_speed_m_s * HAULING
@@ -75,8 +86,9 @@ def smooth_haul(
 
 
 def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) -> SteppedManoeuvre:
-    """The simulation hauls ``hauled`` metres to port and less to starboard while the ship gains
-    speed: both with the accelerations of the gear file, which set in and end abruptly.
+    """Simulate hauling ``hauled`` metres to port and fewer to starboard while the ship speeds up.
+
+    Winches and ship accelerate as the gear file says, with abrupt starts and stops.
     """
     simulation = Simulation(model, START, period=0.5 * step)
     simulation.command = Command(

@@ -49,8 +49,9 @@ DIAMOND = pi / 4
 
 @dataclass(frozen=True)
 class PanelPoint:
-    """Published coefficient of a panel at an angle (degrees), and that of the model, both on the
-    area of the source.
+    """Drag coefficients of a panel at an angle (degrees): published and modelled.
+
+    Both use the reference area of the source.
     """
 
     panel: PanelRecord

@@ -29,8 +29,10 @@ NET_FINENESS_FACTOR = 0.5
 
 @dataclass(frozen=True)
 class WholeNet:
-    """Net with its area of twine (m²), and its drag (N) by speed (knots), as built and in
-    equilibrium; speeds without a steady state are missing there.
+    """Net with its twine area (m²), and its drag (N) by towing speed (knots).
+
+    ``built`` is the drag of the net as drawn, ``towed`` that in equilibrium. Speeds without a
+    steady state are missing in ``towed``.
     """
 
     name: str

@@ -50,9 +50,7 @@ def measured(windows: Sequence[SteadyWindow]) -> FloatArray:
 
 
 def widest_speed(windows: Sequence[SteadyWindow]) -> tuple[float, list[int]]:
-    """Speed (m/s) at which the trial covers the widest range of warp lengths, and the
-    windows towed at it.
-    """
+    """Speed (m/s) with the widest range of warp lengths, and the indices of its windows."""
     groups: dict[float, list[int]] = defaultdict(list)
     for row, window in enumerate(windows):
         groups[round(window.means['speed'], 1)].append(row)

@@ -76,8 +76,9 @@ CHANGES = (
 def changed_hauls(
     gear: GearRecord, haul: HaulRecord, changes: Sequence[Change] = CHANGES
 ) -> list[tuple[Observables | None, Mapping[str, float]]]:
-    """Observables and derived quantities of a haul with each change; none where that has no steady
-    state.
+    """Observables and derived quantities of a haul with each change of the gear.
+
+    A change without a steady state gives None and an empty mapping.
     """
     found: list[tuple[Observables | None, Mapping[str, float]]] = []
     for change in changes:

@@ -52,8 +52,11 @@ class PointRecord(Record):
 
 
 class HaulRecord(Record):
-    """Haul: length of each warp, speed through the water, weights in water that were changed, and
-    twine that the net had less of than its plan says.
+    """Published haul.
+
+    ``warp_m`` is the length of each warp, and ``speed_kn`` the speed through the water.
+    ``hung_weight_in_water_n`` gives weights that were changed, ``thinner`` the twine that was
+    thinner than the net plan says.
     """
 
     name: str
@@ -196,8 +199,10 @@ class UnusedSource(Record):
 
 
 class PublishedHauls(Record):
-    """All published hauls: sources by name, hauls by gear, trends, what was not used, and the
-    accuracy to compare with.
+    """All published hauls.
+
+    They have sources by name, hauls by gear, trends, sources not used, and the accuracy to compare
+    with.
     """
 
     sources: dict[str, HaulSource]

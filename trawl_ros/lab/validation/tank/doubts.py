@@ -29,8 +29,10 @@ COARSE = 0.5
 
 @dataclass(frozen=True)
 class Doubt:
-    """Assumed number: its change by a factor, and the ends of the factors that are tried; or twine
-    that is not ``small`` as in the tank.
+    """Assumed value of the tank's model, with the factors to vary it by.
+
+    ``change`` scales the value by a factor, and ``low`` and ``high`` are the factors to try. If
+    ``small`` is False, the twine has its drag at sea instead of that in the tank.
     """
 
     what: str

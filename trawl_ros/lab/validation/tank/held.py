@@ -36,8 +36,16 @@ STEPS = 4
 
 @dataclass(frozen=True)
 class HeldNet:
-    """Net held by its pulling points: its model and equilibrium, and what the floor carries of the
-    footrope (N).
+    """Net held by its pulling points.
+
+    Attributes
+    ----------
+    model, found
+        Model and its equilibrium.
+    elevation
+        Height of the frame's origin above the floor, m.
+    floor
+        Weight of the footrope that the floor carries, N.
     """
 
     model: GearModel
@@ -63,8 +71,9 @@ class HeldNet:
 
     @property
     def laid(self) -> float:
-        """Weight in water (N) of the lower bridles, which the floor carries; they are made as the
-        upper ones.
+        """Weight in water (N) of the lower bridles, which the floor carries.
+
+        They are made as the upper ones.
         """
         return 2.0 * (BRIDLE + SHACKLE) * self.model.gear.bridle.weight_in_water_n_m
 
