@@ -7,11 +7,6 @@ A publisher leaves no name in a bag. A topic has two sources if its readings do 
 cannot do: alternate between two channels, give two readings for one time, go back in time
 repeatedly, jump between two courses at every reading, or give readings on a second course in
 addition to those that the rate asks for.
-
-A publisher leaves no name in a bag. That there are two is known from what one cannot do: come by
-turns from two channels, give two readings for one time, go back in time again and again, jump
-to and fro between two courses at every reading, or give readings on a second course beside, and not
-instead of, those that its rate asks for.
 """
 
 from array import array

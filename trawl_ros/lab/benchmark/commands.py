@@ -22,11 +22,9 @@ from trawl_ros.estimation.bag_windows import BagTask, read_tow
 from trawl_ros.estimation.fit.nuisance import eliminate_nuisance
 from trawl_ros.estimation.tows import numbered
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.benchmark.bytecode import bytecode_kept
-from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
-from trawl_ros.lab.running.timing import timed
+from trawl_ros.lab.running.timing import Part, bytecode_kept, shares, timed
 from trawl_ros.records.topics import NAMESPACE
 from trawl_ros.solver.effect_sensitivity import by_effects
 from trawl_ros.solver.equilibrium import find_equilibrium

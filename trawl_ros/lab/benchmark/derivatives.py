@@ -9,10 +9,9 @@ import numpy as np
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.haul import FINEST_S, HaulManoeuvre, haul_of
-from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.report.measured import MeasuredValue, TargetRange, at_most
 from trawl_ros.lab.report.page import Findings
-from trawl_ros.lab.running.timing import timed
+from trawl_ros.lab.running.timing import Part, shares, timed
 from trawl_ros.model.assembly import linearised
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.linear.factor import Factor, factorised

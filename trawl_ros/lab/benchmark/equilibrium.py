@@ -7,13 +7,12 @@ from itertools import cycle
 from statistics import median
 
 from trawl_ros.lab.benchmark.gears import default_gear
-from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed, peer
 from trawl_ros.lab.reference_codes.moorpy_wire import MoorPyWire
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
-from trawl_ros.lab.running.timing import median_s, timed
+from trawl_ros.lab.running.timing import Part, median_s, shares, timed
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import Equilibrium, SteadyState, find_equilibrium, steady_state

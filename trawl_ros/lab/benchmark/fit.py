@@ -1,8 +1,11 @@
-"""One fit of the coefficients, counted in steady states that had to be solved."""
+"""Cost of one fit of the coefficients, as the number of steady states that it solves."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.nuisance import eliminate_nuisance
@@ -10,23 +13,69 @@ from trawl_ros.estimation.fit.objective import objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.benchmark.fit_rivals import (
     CoordinateSearch,
     Counting,
     FiniteDifferencePredictor,
     Searched,
 )
-from trawl_ros.lab.benchmark.fit_trial import LENGTHS, MORE_DRAG, SPEEDS, plant_of, trial
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
-from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
-from trawl_ros.lab.running.timing import timed
-from trawl_ros.model.gear_model import build_model
+from trawl_ros.lab.running.timing import Part, shares, timed
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.records.observables import OBSERVABLES
-from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities
 from trawl_ros.solver.slow_mode import slow_mode
+
+LENGTHS = (200.0, 375.0, 550.0, 725.0, 900.0)
+SPEEDS = (1.8, 2.0, 2.2)
+
+MORE_DRAG = 1.05
+READINGS = 60
+SEED = 1
+
+
+def plant_of(gear: GearRecord) -> GearModel:
+    """A gear unlike its model: its net has more drag."""
+    drag = {'normal_drag': gear.netting.normal_drag * MORE_DRAG}
+    return build_model(gear.model_copy(update={'netting': gear.netting.model_copy(update=drag)}))
+
+
+def trial(
+    plant: GearModel, lengths: Sequence[float], speeds: Sequence[float]
+) -> list[SteadyWindow]:
+    """One window per steady state, with errors as large as those of the instruments."""
+    rng = np.random.default_rng(SEED)
+    windows: list[SteadyWindow] = []
+    found: Equilibrium | None = None
+    for length in lengths:
+        for speed in speeds:
+            found = find_equilibrium(plant, OperatingPoint(length, length, speed), found)
+            seen = dict(zip(OBSERVABLES, found.observables.array(), strict=True))
+            seen |= {'port_length': length, 'starboard_length': length, 'speed': speed}
+            exact = {name: float(seen[name]) for name in (*INPUTS, *MEASURED)}
+            std = {name: CHANNELS[name].bias_std(value) for name, value in exact.items()}
+            means = {name: exact[name] + std[name] * float(rng.normal()) for name in exact}
+            index = len(windows)
+            windows.append(
+                SteadyWindow(
+                    index=index,
+                    state=index,
+                    start_ns=index * READINGS * SECOND,
+                    end_ns=(index + 1) * READINGS * SECOND,
+                    means=means,
+                    noise=dict.fromkeys(exact, 0.0),
+                    bias=std,
+                    counts=dict.fromkeys(exact, READINGS),
+                )
+            )
+    return windows
+
 
 AROUND = 24
 """Meshes around the net of the model: fewer than the default, for the rivals' sake."""

@@ -16,7 +16,6 @@ from statistics import median
 import psutil
 
 from trawl_ros.core.resources import share_path
-from trawl_ros.lab.benchmark.bytecode import bytecode_kept
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.modules import without_ros
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
@@ -24,7 +23,7 @@ from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.running.chain import MEGABYTE
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes, Value
-from trawl_ros.lab.running.timing import median_s
+from trawl_ros.lab.running.timing import bytecode_kept, median_s
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import steady_state
 

@@ -7,8 +7,13 @@ from dataclasses import dataclass, replace
 from statistics import median
 
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
-from trawl_ros.lab.reference_codes.history import History, apart
-from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre, haul_and_turn, short_manoeuvre
+from trawl_ros.lab.reference_codes.manoeuvre import (
+    History,
+    WireManoeuvre,
+    apart,
+    haul_and_turn,
+    short_manoeuvre,
+)
 from trawl_ros.lab.reference_codes.moordyn_wire import MoorDynWire
 from trawl_ros.lab.reference_codes.own_wire import own_history, own_model, own_steady
 from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, TowedWire

@@ -30,7 +30,6 @@ class DemoFolder:
     """
 
     SENTENCES = 'marport.nmea'
-    FIGURES = ('history.png', 'gear.png')
     RESULTS = 'identification'
     HIDDEN = 'hidden'
 

@@ -6,8 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.lab.reference_codes.moordyn import MoorDyn
-from trawl_ros.lab.reference_codes.moordyn_input import Line, LineType, Options, Point, input_file
+from trawl_ros.lab.reference_codes.moordyn import (
+    Line,
+    LineType,
+    MoorDyn,
+    Options,
+    Point,
+    input_file,
+)
 from trawl_ros.model.assembly import points_of, rest_lengths
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.line import BarProperties

@@ -6,10 +6,15 @@ from itertools import pairwise
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.lab.reference_codes.history import History
-from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre
-from trawl_ros.lab.reference_codes.moordyn import MoorDyn
-from trawl_ros.lab.reference_codes.moordyn_input import Line, LineType, Options, Point, input_file
+from trawl_ros.lab.reference_codes.manoeuvre import History, WireManoeuvre
+from trawl_ros.lab.reference_codes.moordyn import (
+    Line,
+    LineType,
+    MoorDyn,
+    Options,
+    Point,
+    input_file,
+)
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire, WireSteadyState
 
 BLOCK, LUMP, WIRE_LINE = 0, 1, 0

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.lab.reference_codes.absent import PeerFailed, peer
-from trawl_ros.lab.reference_codes.moordyn_input import DEEP
+from trawl_ros.lab.reference_codes.moordyn import DEEP
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire, WireSteadyState
 
 PARTS = 40

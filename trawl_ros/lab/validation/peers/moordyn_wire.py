@@ -6,8 +6,14 @@ from contextlib import closing
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.lab.reference_codes.history import Apart, History, apart
-from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre, haul_and_turn, short_manoeuvre
+from trawl_ros.lab.reference_codes.manoeuvre import (
+    Apart,
+    History,
+    WireManoeuvre,
+    apart,
+    haul_and_turn,
+    short_manoeuvre,
+)
 from trawl_ros.lab.reference_codes.moordyn_wire import SETTLING, MoorDynWire
 from trawl_ros.lab.reference_codes.own_wire import own_history, own_model, own_steady
 from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, WireSteadyState
