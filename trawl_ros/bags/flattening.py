@@ -94,7 +94,7 @@ class FlatColumn:
     steps: tuple[str | int, ...]
 
     def value(self, message: Any) -> Any:
-        """Give the value in a message; None where an array of it is shorter."""
+        """Return the value in a message; None where an array of it is shorter."""
         value = message
         try:
             for step in self.steps:
@@ -130,7 +130,7 @@ class FlatLayout:
             self.columns = {column for column in self.columns if not self._is_out(column.path)}
 
     def finish(self) -> list[FlatColumn]:
-        """Give the columns in the order of the fields, without fields that need too many."""
+        """Return the columns in the order of the fields, without fields that need too many."""
         for path, count in self._top_level().items():
             if count > MAX_COLUMNS:
                 self.left_out[path] = f'would need {count} columns'
@@ -231,7 +231,7 @@ def _leaves(store: Typestore, type_name: str, path: str) -> Iterator[tuple[str, 
 
 
 def field_unit(topic: str, type_name: str, path: str) -> str:
-    """Give the unit of a field, '' where it has none or none is known.
+    """Return the unit of a field, '' where it has none or none is known.
 
     Parameters
     ----------

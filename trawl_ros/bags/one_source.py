@@ -286,6 +286,6 @@ def _alike(sizes: FloatArray) -> bool:
 
 
 def _values(sample: Sample) -> tuple[float, ...] | None:
-    """Give what an instrument reads; None where it is no number on a course of its own."""
+    """Return what an instrument reads; None where it is no number on a course of its own."""
     fields = SENSORS[sample.topic].fields
     return tuple(field.get(sample) for field in fields if field.on_course) or None

@@ -170,7 +170,7 @@ class Bag:
         return by_topic
 
     def raw(self, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
-        """Give messages undecoded, of all topics or of those named in full.
+        """Yield messages undecoded, of all topics or of those named in full.
 
         Raises
         ------
@@ -189,7 +189,7 @@ class Bag:
             raise BagError(f'{self.path}: holds no message that can be read{known}')
 
     def as_stored(self) -> Iterator[RawMessage]:
-        """Give all messages undecoded and unchecked, whatever their types; there may be none."""
+        """Yield all messages undecoded and unchecked, whatever their types; there may be none."""
         read = 0
         with reading(self.path, BagError, lambda: f'after {read} messages'):
             for stored in self._source.messages():
@@ -205,7 +205,7 @@ class Bag:
             )
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Received]:
-        """Give decoded messages, of all topics or of those named in full.
+        """Yield decoded messages, of all topics or of those named in full.
 
         Messages that cannot be decoded are left out and counted in `problems`.
 
@@ -246,7 +246,7 @@ class Bag:
         return self._decoders_made[raw.topic](raw.data)
 
     def types_of(self, topic: str) -> Typestore:
-        """Give the types by which a topic's messages are decoded.
+        """Return the types by which a topic's messages are decoded.
 
         Raises
         ------

@@ -43,13 +43,13 @@ class StorageFile(Protocol):
         """Definition of each topic's messages."""
 
     def types(self) -> set[tuple[str, str]]:
-        """Give all (topic, type) there are."""
+        """Return all (topic, type) there are."""
 
     def counts(self) -> dict[tuple[str, str], int] | None:
-        """Give the number of messages by (topic, type); None if the file does not say."""
+        """Return the number of messages by (topic, type); None if the file does not say."""
 
     def messages(self) -> Iterator[RawMessage]:
-        """Give all messages in the order of their log times."""
+        """Return all messages in the order of their log times."""
 
 
 @dataclass(frozen=True)
@@ -137,11 +137,11 @@ class BagSource:
         return self._metadata.message_count if self._metadata else None
 
     def types(self) -> set[tuple[str, str]]:
-        """Give all (topic, type) there are."""
+        """Return all (topic, type) there are."""
         return set[tuple[str, str]]().union(*(file.types() for file in self.files))
 
     def messages(self) -> Iterator[RawMessage]:
-        """Give all messages in the order of their log times."""
+        """Yield all messages in the order of their log times."""
         streams = [file.messages() for file in self.files]
         size = sum(path.stat().st_size for path in self._paths)
         allowed = Allowance(self.files[0].path, size)

@@ -80,7 +80,7 @@ class TopicContent:
             self._doubt = self._watch.take(message.channel, sample, message.sequence)
 
     def findings(self, topic: str) -> list[Finding]:
-        """Give what was found, by the full name of the topic."""
+        """Return what was found, by the full name of the topic."""
         found = [
             Finding('decode', topic, f'{count} of {self._decoded} messages looked at {what} (the '
                     f'first: {one_line(self._reasons[what], REASON_CHARACTERS)})')

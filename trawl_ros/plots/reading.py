@@ -20,7 +20,7 @@ from trawl_ros.records.samples import INSTRUMENTS, SENSORS, Sample
 from trawl_ros.records.truth import SIDES
 
 NOT_DRAWN = ('sonar/bottom', 'vessel/echo_sounder/depth', 'vessel/echo_sounder/school')
-"""Topics with numbers that no figure of a tow shows."""
+"""Topics with numbers that no figure shows."""
 
 Columns = dict[str, float]
 
@@ -126,11 +126,11 @@ class QuantityReader:
         self._doors: dict[str, tuple[int, FloatArray]] = {}
 
     def sample(self, sample: Sample) -> Quantities:
-        """Give the quantities of a sample; it may have none."""
+        """Return the quantities of a sample; it may have none."""
         return Quantities(sample.stamp, 'measured', sample_columns(sample, self._depth_at))
 
     def truth(self, topic: str, message: Any) -> Quantities:
-        """Give the quantities of a message of one of `TRUTH`.
+        """Return the quantities of a message of one of `TRUTH`.
 
         The distance of the doors comes with the second of two messages of the same stamp.
 
@@ -210,7 +210,7 @@ def _series(rows: dict[str, list[tuple[int, float]]], start: int) -> dict[str, S
 
 
 def _continuous(angles: FloatArray) -> FloatArray:
-    """Angles without jumps of a whole turn, whatever is missing between them."""
+    """Angles without jumps of a whole turn, also over gaps."""
     known = np.isfinite(angles)
     unwrapped: FloatArray = angles.copy()
     unwrapped[known] = np.unwrap(angles[known])

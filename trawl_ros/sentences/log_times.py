@@ -1,8 +1,8 @@
 """Times of the sentences of a log, of which only some state one.
 
-A sentence of the ship with a time has that; the date comes from RMC or ZDA. A sentence without a
-time has the time said last. Where the same sentence comes several times before the next time is
-said, as headings do, its stamps spread evenly over the interval.
+A sentence of the ship with a time has that time; the date comes from RMC or ZDA. A sentence without
+a time has the last stated time. If the same sentence comes several times before the next stated
+time, as headings do, its stamps spread evenly over the interval.
 """
 
 from collections import Counter, defaultdict

@@ -223,7 +223,7 @@ class _TableReader:
             ) from None
 
     def _readings(self, row: LogRow, entry: TopicMapping) -> dict[str, float]:
-        """Give the fields of one topic in SI units; NaN where the row has none."""
+        """Return the fields of one topic in SI units; NaN where the row has none."""
         return {field: self._reading(row, source) for field, source in entry.fields.items()}
 
     def _reading(self, row: LogRow, source: ColumnMapping) -> float:

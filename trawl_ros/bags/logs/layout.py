@@ -91,7 +91,7 @@ class LogRow:
     cells: Mapping[str, str]
 
     def text(self, column: str) -> str:
-        """Give a cell; in a long table those that have no row are empty."""
+        """Return a cell; in a long table those that have no row are empty."""
         return self.cells.get(column, '')
 
     def bad(self, column: str, expected: str) -> BadRow:

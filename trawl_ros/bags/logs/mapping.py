@@ -83,7 +83,7 @@ class LogMapping(Record):
     missing: tuple[str, ...] = ('', 'nan', 'na', 'n/a', 'null')
 
     def clocks(self) -> list[Clock]:
-        """Give all clocks, that of the whole log first."""
+        """Return all clocks, that of the whole log first."""
         return [self.clock, *(entry.clock for entry in self.topics.values() if entry.clock)]
 
     def needed(self) -> dict[str, str]:

@@ -114,7 +114,7 @@ def parse_records(data: bytes) -> Iterator[object]:
 
 
 def open_chunk(record: bytes, allowed: Allowance) -> list[Record]:
-    """Give schemas, channels and messages of a chunk, in the order in which they stand there.
+    """Return schemas, channels and messages of a chunk, in the order in which they stand there.
 
     Parameters
     ----------

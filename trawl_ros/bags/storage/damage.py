@@ -67,7 +67,7 @@ _SAMPLE_BYTES = 1 << 22
 def scan_records(
     stream: BinaryIO, size: int, report: Callable[[str, int], None]
 ) -> Iterator[tuple[int, int, int]]:
-    """Give opcode, offset and length of each record, up to and with the end of data.
+    """Yield opcode, offset and length of each record, up to and with the end of data.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ def _confirmed(
     stated: Mapping[str, Definition] | None,
     types: BagTypes,
 ) -> Recovered | None:
-    """Give what metadata, or the project's table, say of a channel's topic; None if nothing."""
+    """Return what metadata, or the project's table, say of a channel's topic; None if nothing."""
     topic = channel.topic
     if stated is not None:
         if topic not in stated:
@@ -271,7 +271,7 @@ def _all_decode(types: BagTypes, definition: Definition, messages: Sequence[byte
 def sample_messages(
     chunks: Iterable[Sequence[object]], numbers: Iterable[int]
 ) -> dict[int, list[bytes]]:
-    """Give some messages of channels, out of all chunks."""
+    """Return some messages of channels, out of all chunks."""
     samples: dict[int, list[bytes]] = {
         number: [] for number in islice(numbers, RECOVERED_CHANNELS.value)
     }

@@ -82,7 +82,7 @@ class Database:
         return dict(self._definitions)
 
     def types(self) -> set[tuple[str, str]]:
-        """Give all (topic, type) there are."""
+        """Return all (topic, type) there are."""
         return set(self._topics.values())
 
     def counts(self) -> dict[tuple[str, str], int] | None:
@@ -99,7 +99,7 @@ class Database:
             return None
 
     def messages(self) -> Iterator[RawMessage]:
-        """Give all messages in the order of their times, as far as the database can be read."""
+        """Yield all messages in the order of their times, as far as the database can be read."""
         lost: Counter[str] = Counter()
         read = size = 0
         try:

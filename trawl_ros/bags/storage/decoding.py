@@ -61,7 +61,7 @@ class BagTypes:
         return decoded
 
     def store(self, topic: str, definition: Definition) -> Typestore:
-        """Give the types of a topic.
+        """Return the types of a topic.
 
         Raises
         ------

@@ -119,7 +119,7 @@ class McapFile:
         return by_topic
 
     def types(self) -> set[tuple[str, str]]:
-        """Give all (topic, type) there are."""
+        """Return all (topic, type) there are."""
         return {(topic, definition.type) for topic, definition in self._known.all().values()}
 
     def counts(self) -> dict[tuple[str, str], int] | None:
@@ -138,7 +138,7 @@ class McapFile:
         return counts
 
     def messages(self) -> Iterator[RawMessage]:
-        """Give all messages in the order of their log times; equal ones as they stand in the file.
+        """Yield all messages in the order of their log times; equal ones as they stand in the file.
 
         Memory holds only chunks that overlap. The numbers of messages, by topic, are the order in
         which they came where this project wrote the file.

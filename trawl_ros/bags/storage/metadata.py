@@ -74,7 +74,7 @@ class BagMetadata(_Lenient):
         return None if start is None or lasts is None else (start, start + lasts)
 
     def counts(self) -> dict[tuple[str, str], int]:
-        """Give the number of messages by (topic, type), of those that have any."""
+        """Return the number of messages by (topic, type), of those that have any."""
         counts: dict[tuple[str, str], int] = {}
         for entry in self.topics_with_message_count:
             key = (entry.topic_metadata.name, entry.topic_metadata.type)
@@ -82,7 +82,7 @@ class BagMetadata(_Lenient):
         return {key: count for key, count in counts.items() if count}
 
     def stated(self) -> dict[str, Definition]:
-        """Give what is said of each topic, for files in which it was lost."""
+        """Return what is said of each topic, for files in which it was lost."""
         offered = self.offered()
         entries = [entry.topic_metadata for entry in self.topics_with_message_count]
         return {
@@ -117,7 +117,7 @@ class FileEntry:
     span: tuple[int, int] | None
 
     def as_metadata(self) -> dict[str, Any]:
-        """Give the entry of ``files``."""
+        """Return the entry of ``files``."""
         return {'path': self.name, **_extent([self])}
 
 
@@ -130,7 +130,7 @@ class TopicEntry:
     count: int
 
     def as_metadata(self) -> dict[str, Any]:
-        """Give the entry of ``topics_with_message_count``."""
+        """Return the entry of ``topics_with_message_count``."""
         return {
             'topic_metadata': {
                 'name': self.name,

@@ -99,7 +99,7 @@ class Descriptions:
         self._added[number] = topic, definition
 
     def find(self, number: int) -> tuple[str, Definition] | None:
-        """Give topic and definition of a channel's messages; None if nothing describes it."""
+        """Return topic and definition of a channel's messages; None if nothing describes it."""
         if number in self._added:
             return self._added[number]
         channel = self._channels.get(number)
@@ -113,12 +113,12 @@ class Descriptions:
         return [number for number in sorted(numbers) if not self._describes(number)]
 
     def all(self) -> dict[int, tuple[str, Definition]]:
-        """Give topic and definition of all channels by their numbers."""
+        """Return topic and definition of all channels by their numbers."""
         numbers = dict.fromkeys([*self._channels, *self._added])
         return {number: pair for number in numbers if (pair := self.find(number))}
 
     def records(self) -> list[Description]:
-        """Give all schemas and channels that were learnt."""
+        """Return all schemas and channels that were learnt."""
         return [*self._schemas.values(), *self._channels.values()]
 
     def _describes(self, number: int) -> bool:
