@@ -22,52 +22,59 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import SENSORS, Sample
 
 BLOCK = 60
-"""Readings that are looked at together; what is seldom is a fault and no second source."""
+"""Number of readings that are judged together; rare oddities are faults and no second source."""
 
 RETURNS = 3
-"""Times that a channel comes again behind another, from which on they take turns."""
+"""Number of returns of a channel after another one from which on the channels alternate."""
 
 SHARE = 0.25
-"""Part of a block that has stamps which one source does not give."""
+"""Share of a block with stamps that one source does not give."""
 
 JUMP = 2.0
-"""Least ratio of the step to the next reading to that to the one behind it, by which waves have
-moved on already."""
+"""Smallest ratio of the step to the next reading to the step to the one after that.
+
+Waves have moved on after two steps.
+"""
 
 LONGEST_STEP = 1_500_000_000
-"""Time (ns) between readings up to which they are looked at for this: slower ones may alternate
-because swell comes at twice their interval."""
+"""Longest interval (ns) between readings that are judged by jumps.
+
+Slower readings may alternate because the swell has twice their interval.
+"""
 
 ALTERNATING = 0.9
-"""Part of the steps in a block that turn back."""
+"""Share of the steps in a block that turn back."""
 
 MEMORY = 4 * BLOCK
-"""Readings among which those of a slower source are looked for."""
+"""Number of readings that are searched for those of a slower source."""
 
 VISITS = 6
-"""Readings on a second course from which on it is one."""
+"""Number of readings on a second course that make it a source."""
 
 SPREAD = 0.3
-"""Largest deviation, as a part, of what one source has in common: the distance of its readings from
-the other's, and the time between them."""
+"""Largest relative deviation of what readings of one source have in common.
+
+These are their distance from the other source's readings, and the time between them.
+"""
 
 MOST = 0.9
-"""Part of the readings on the first course that stand out by less than the second is off it."""
+"""Share of the readings on the first course that deviate by less than the second course does."""
 
 ONE_PERIOD = 1.5
-"""Largest ratio of the time between two readings that have one of the second course between them
-to that between two that have not: a reading that is wrong stands in another's place, and makes it
-two."""
+"""Largest ratio of the intervals around a reading of the second course to the other intervals.
+
+A wrong reading replaces a right one, and so makes the interval twice as long.
+"""
 
 
 BACK_NS = 10 * SECOND
 """Stamps that go back by more than this (ns) are those of a clock that was set back."""
 
 RECENT_READINGS = 2 * CONFIRMING_READINGS - 1
-"""Readings of which the middle one has a stamp that can be believed."""
+"""Number of readings whose median stamp is trusted."""
 
 SETTLED_READINGS = 10
-"""Readings behind a step back from which on the clock was set, and none is stamped falsely."""
+"""Number of readings after a step back that show a set clock and no false stamp."""
 
 
 class Doubt(NamedTuple):
@@ -78,7 +85,7 @@ class Doubt(NamedTuple):
 
 
 class SourceWatch:
-    """Watch for a second source, or a clock that tells no time, among the readings of a topic."""
+    """Detector of a second source, or of a clock that stands still, in the readings of a topic."""
 
     def __init__(self) -> None:
         # Numbers side by side, for there are as many of these as messages.
@@ -89,7 +96,7 @@ class SourceWatch:
         self._doubt: Doubt | None = None
 
     def take(self, channel: int, sample: Sample, sequence: int = 0) -> Doubt | None:
-        """Take a reading; give the doubt by the last judgement, None without one.
+        """Take a reading; return the doubt of the last judgement, None without one.
 
         Parameters
         ----------
@@ -117,7 +124,7 @@ class SourceWatch:
         return self._doubt
 
     def _watch_steps(self, stamp: int) -> None:
-        """Remember the last step back: count, and stamps before and after it."""
+        """Store the last step back: its count, and the stamps before and after it."""
         if not self._stamps:
             return
         before = self._stamps[-1]
@@ -182,7 +189,7 @@ class SourceWatch:
 
 
 def _still(stamps: StampArray) -> Doubt | None:
-    """Tell stamps (n,) that stand still."""
+    """Describe stamps (n,) that stand still."""
     last = int(stamps[-1])
     if np.any(stamps[-BLOCK // 2 :] != last):
         return None
@@ -197,7 +204,7 @@ def _clock_set_back(where: str) -> Doubt:
 
 
 def _by_turns(channels: Sequence[int]) -> str:
-    """Tell that readings come from channels (n,) by turns; '' if they do not."""
+    """Describe readings that alternate between channels (n,); '' if they do not."""
     met: set[int] = set()
     returns = 0
     for before, channel in zip((None, *channels), channels, strict=False):
@@ -207,7 +214,7 @@ def _by_turns(channels: Sequence[int]) -> str:
 
 
 def _alternates(values: FloatArray) -> bool:
-    """True if any course of some values (n, k) jumps to and fro."""
+    """True if any course of the values (n, k) jumps back and forth."""
     with np.errstate(over='ignore', invalid='ignore'):
         steps = np.diff(values, axis=0)
         turns = np.count_nonzero(steps[1:] * steps[:-1] < 0.0, axis=0)
@@ -273,12 +280,12 @@ def _on_second(times: FloatArray, values: FloatArray, chosen: BoolArray) -> int:
 
 
 def _departures(values: FloatArray) -> FloatArray:
-    """Return by how much values (n, ...) depart from the mean of their neighbours (n - 2, ...)."""
+    """Return the differences of values (n, ...) from the mean of their neighbours, (n - 2, ...)."""
     return values[1:-1] - (values[:-2] + values[2:]) / 2.0
 
 
 def _alike(sizes: FloatArray) -> bool:
-    """True if most of some sizes (n,) deviate little."""
+    """True if most of the sizes (n,) deviate little."""
     # Of some ten numbers, which arrays take longer to sort.
     each = sizes.tolist()
     middle = float(median(each))
@@ -286,6 +293,6 @@ def _alike(sizes: FloatArray) -> bool:
 
 
 def _values(sample: Sample) -> tuple[float, ...] | None:
-    """Return what an instrument reads; None where it is no number on a course of its own."""
+    """Return the numbers of an instrument's reading; None if none of them follows a course."""
     fields = SENSORS[sample.topic].fields
     return tuple(field.get(sample) for field in fields if field.on_course) or None

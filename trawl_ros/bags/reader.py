@@ -1,6 +1,6 @@
 """Reader of bags in the order of log times: folders, single MCAP files, and damaged ones.
 
-What is readable is used; what is wrong with the rest is said in `Bag.problems`.
+Everything readable is used; `Bag.problems` lists the faults of the rest.
 """
 
 from collections import Counter
@@ -148,7 +148,7 @@ class Bag:
         return [file.path for file in self._source.files if not file.indexed]
 
     def metadata_faults(self, counts: Mapping[str, int], span: tuple[int, int] | None) -> list[str]:
-        """Hold ``metadata.yaml`` against all that was read; see `metadata_faults`."""
+        """Compare ``metadata.yaml`` with everything that was read; see `metadata_faults`."""
         return self._source.metadata_faults(counts, span)
 
     def definitions(self) -> dict[str, Definition]:
@@ -189,7 +189,7 @@ class Bag:
             raise BagError(f'{self.path}: holds no message that can be read{known}')
 
     def as_stored(self) -> Iterator[RawMessage]:
-        """Yield all messages undecoded and unchecked, whatever their types; there may be none."""
+        """Yield all messages undecoded and unchecked, of any type; there may be none."""
         read = 0
         with reading(self.path, BagError, lambda: f'after {read} messages'):
             for stored in self._source.messages():
@@ -230,7 +230,7 @@ class Bag:
             )
 
     def decode(self, raw: RawMessage) -> Any:
-        """Decode a message from `raw`: for callers who need few of many.
+        """Decode a message from `raw`, for callers that need few of many.
 
         Raises
         ------

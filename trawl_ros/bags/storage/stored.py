@@ -53,7 +53,7 @@ class Definition:
 
 
 Description = Schema | Channel
-"""Record of an MCAP file without which messages cannot be read."""
+"""Record of an MCAP file that is needed to read messages."""
 
 
 def describe(type_name: str, qos: str) -> Definition:
@@ -77,7 +77,7 @@ def describe(type_name: str, qos: str) -> Definition:
 
 
 class Descriptions:
-    """Descriptions of channels by their numbers; of two that differ the first one counts."""
+    """Descriptions of channels by their numbers; if two differ, the first one counts."""
 
     def __init__(self) -> None:
         self._schemas: dict[int, Schema] = {}
@@ -95,7 +95,7 @@ class Descriptions:
         self._made.clear()
 
     def add(self, number: int, topic: str, definition: Definition) -> None:
-        """Settle what a channel is of which the file does not say it."""
+        """Set the description of a channel that the file does not describe."""
         self._added[number] = topic, definition
 
     def find(self, number: int) -> tuple[str, Definition] | None:
@@ -109,7 +109,7 @@ class Descriptions:
         return self._made.get(number)
 
     def lacking(self, numbers: Collection[int]) -> list[int]:
-        """Return those channels that are not described, or whose type is not."""
+        """Return the channels that are not described, or whose type is not."""
         return [number for number in sorted(numbers) if not self._describes(number)]
 
     def all(self) -> dict[int, tuple[str, Definition]]:
