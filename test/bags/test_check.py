@@ -110,7 +110,7 @@ def test_stamps_that_run_backward_or_repeat_are_found(tmp_path):
     check = check_bag(path)
     assert (check.topics[0].backward, check.topics[0].duplicates) == (1, 2)
     assert [finding.text for finding in check.findings] == [
-        'has 1 stamps before the one before; expected none',
+        'has 1 stamps earlier than the one before; expected none',
         'has 2 stamps equal to the one before; expected none',
     ]
 
@@ -204,7 +204,7 @@ def test_a_file_without_index_is_found(tmp_path):
         '',
         index_types=IndexType.NONE,
     )
-    assert text(path) == 'x.mcap has no index that can be used; `trawl bag repair` makes one'
+    assert text(path) == 'x.mcap has no usable index; run `trawl bag repair`'
 
 
 def test_a_chunk_that_fails_its_checksum_is_found(bag_path, mcap_path):

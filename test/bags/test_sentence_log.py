@@ -170,7 +170,7 @@ def test_of_two_systems_that_tell_a_topic_the_first_named_is_used(tmp_path):
     assert done.left_out == {
         'simrad_iti for door/spread, which marport tells': 1,
         "sentence @IITDS: field 2 is 'f', expected 'M'": 1,
-        'sentence @IITDX, which no table has': 1,
+        'sentence @IITDX, which is in no table': 1,
     }
 
 
@@ -182,7 +182,7 @@ def test_times_of_a_recorder_and_of_tag_blocks_are_those_of_gear_too(tmp_path):
     done, found = imported(tmp_path, lines, 'marport', recorder)
     ((_, stamp),) = found
     assert stamp == 1_785_580_731_250 * 1_000_000
-    assert done.left_out == {'sentence @IITDS, which no table has': 1}
+    assert done.left_out == {'sentence @IITDS, which is in no table': 1}
     (tmp_path / 'tagged').mkdir()
     recorder = 'time: recorder\n  recorder: {format: milliseconds}'
     _, found = imported(tmp_path / 'tagged', [tag + spread], 'marport', recorder)

@@ -179,7 +179,7 @@ def test_noise_is_counted_by_reason_and_what_is_whole_still_comes(graph, ship, p
     graph.until(lambda: [s for (t, _), s in ship.samples.items() if t == 'door/spread'])
     graph.until(lambda: ship.report('sentences').values.get('not understood') == '5')
     assert ship.report('sentences').values.keys() >= {
-        'not understood: a line that is no text',
+        'not understood: a line that is not text',
         'not understood: sentence $MPMSD: no checksum',
         'not understood: a sentence whose checksum is wrong',
         "not understood: sentence $MPMSD: field 5 is 'ft', expected 'm'",

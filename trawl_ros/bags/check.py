@@ -291,12 +291,11 @@ def _topic_check(
 def _whole(bag: Bag, topics: list[TopicCheck]) -> list[Finding]:
     findings = [Finding('content', '', problem) for problem in bag.problems]
     findings += [
-        Finding('index', '', f'{path.name} has no index that can be used; `trawl bag repair` '
-                'makes one')
+        Finding('index', '', f'{path.name} has no usable index; run `trawl bag repair`')
         for path in bag.files_without_index
     ]  # fmt: skip
     if bag.damaged_chunks:
-        text = f'{bag.damaged_chunks} chunks fail their checksum or make no sense'
+        text = f'{bag.damaged_chunks} chunks fail their checksum or cannot be decoded'
         findings.append(Finding('crc', '', text))
     if not any(checked.count for checked in topics):
         findings.append(Finding('content', '', f'{bag.path}: holds no message'))
@@ -316,7 +315,7 @@ def _against_contract(
     if any(profile.reliability is QosReliability.BEST_EFFORT for profile in offered):
         add('qos', 'was offered best effort, so messages may be missing; expected reliable')
     if known.latched and any(p.durability is QosDurability.VOLATILE for p in offered):
-        add('qos', 'was offered volatile, so who came late got none; expected transient local')
+        add('qos', 'was offered volatile, so late subscribers got none; expected transient local')
     if checked.group not in ('truth', 'instruments'):
         return findings
     if (
@@ -333,7 +332,7 @@ def _against_contract(
             + f', longest {max(gaps) / SECOND:.4g} s',
         )
     if checked.backward:
-        add('order', f'has {checked.backward} stamps before the one before; expected none')
+        add('order', f'has {checked.backward} stamps earlier than the one before; expected none')
     if checked.duplicates:
         add('order', f'has {checked.duplicates} stamps equal to the one before; expected none')
     # A sweep, which comes at no rate of its own, is stamped at its first ping.

@@ -147,7 +147,7 @@ class SourceWatch:
         # Sorted by its stamps, a bag does not tell these two apart.
         known = any(self._sequences) or channels.count(channels[0]) < len(channels)
         also = '' if known else ' (or one, whose clock was set back)'
-        return Doubt('source', f'has two sources{also}, for {why}; expected one instrument')
+        return Doubt('source', f'has two sources{also}: {why}; expected one instrument')
 
     def _set_back(self) -> Doubt | None:
         if self._step is not None and self._count - self._step[0] >= SETTLED_READINGS:
@@ -182,9 +182,9 @@ class SourceWatch:
                 return f'{back} of {number} stamps go back in time'
         near = least <= LONGEST_STEP and median(steps.tolist()) <= LONGEST_STEP
         if near and number == BLOCK and _alternates(values):
-            return f'{number} readings jump to and fro between two courses'
+            return f'{number} readings jump back and forth between two courses'
         if visits := _visits(stamps, readings):
-            return f'{visits} of {len(readings)} readings lie on a second course beside the first'
+            return f'{visits} of {len(readings)} readings lie on a second course'
         return ''
 
 
@@ -199,8 +199,8 @@ def _still(stamps: StampArray) -> Doubt | None:
 
 
 def _clock_set_back(where: str) -> Doubt:
-    return Doubt('stamp', f'has a clock that was set back {where}; expected one that goes on (cut '
-                 'the bag there)')  # fmt: skip
+    return Doubt('stamp', f'has a clock that was set back {where}; expected one that '
+                 'runs on (split the bag there)')  # fmt: skip
 
 
 def _by_turns(channels: Sequence[int]) -> str:
@@ -210,7 +210,7 @@ def _by_turns(channels: Sequence[int]) -> str:
     for before, channel in zip((None, *channels), channels, strict=False):
         returns += channel != before and channel in met
         met.add(channel)
-    return f'it comes by turns from {len(met)} channels' if returns >= RETURNS else ''
+    return f'it alternates between {len(met)} channels' if returns >= RETURNS else ''
 
 
 def _alternates(values: FloatArray) -> bool:

@@ -87,7 +87,7 @@ class TopicContent:
             for what, count in self._failed.items()
         ]  # fmt: skip
         found += [
-            Finding('value', topic, f'{count} readings cannot be: {why}')
+            Finding('value', topic, f'{count} readings are impossible: {why}')
             for why, count in self._impossible.items()
         ]
         if self._doubt is not None:

@@ -51,7 +51,7 @@ def to_sample(topic: str, message: Any) -> Sample:
     except Exception as reason:
         kind = getattr(message, '__msgtype__', type(message).__name__)
         raise MessageError(
-            f'{topic}: a {kind} without what its readings are taken from ({short(reason)})'
+            f'{topic}: a {kind} that lacks the fields of its readings ({short(reason)})'
         ) from reason
 
 

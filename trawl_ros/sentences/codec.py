@@ -100,7 +100,7 @@ class SentenceReader:
         """
         found = self._candidates(frame)
         if not found:
-            raise Foreign(f'sentence {_name(frame)}, which no table has')
+            raise Foreign(f'sentence {_name(frame)}, which is in no table')
         best, reason = -1, ''
         for (system, name), address in found:
             row = self.rows[system, name]

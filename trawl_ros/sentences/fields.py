@@ -13,9 +13,9 @@ from trawl_ros.sentences.table import SentenceField
 YEARS = range(1970, 2038)
 """Range of possible years: stamps of messages count seconds in 32 bits."""
 
-NOT_A_NUMBER = 'a field that is no number'
+NOT_A_NUMBER = 'a field that is not a number'
 NOT_A_POSITION = 'a position that is not degrees and minutes'
-NOT_A_TIME = 'a field that is no time'
+NOT_A_TIME = 'a field that is not a time'
 
 _NUMBER = re.compile(r'[+-]?(?:\d{1,15}(?:\.\d{0,15})?|\.\d{1,15})')
 _TIME = re.compile(r'(\d\d):?(\d\d):?(\d\d)(?:\.(\d{1,9}))?')
@@ -133,7 +133,7 @@ def read_day(parts: Sequence[tuple[str, str]]) -> date | None:
                     numbers['y'] += 1900 if numbers['y'] >= 69 else 2000
     year = numbers['y']
     if year not in YEARS:
-        raise ValueError('a year that cannot be')
+        raise ValueError('an impossible year')
     try:
         return date(year, numbers['m'], numbers['d'])
     except ValueError:

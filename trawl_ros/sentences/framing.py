@@ -19,7 +19,7 @@ LONGEST_LINE = 1024
 LONGEST_FRONT = 256
 """Characters ahead of a sentence that are searched for a recorder's time or a tag block."""
 
-NO_TEXT = 'a line that is no text'
+NO_TEXT = 'a line that is not text'
 CUT_SHORT = 'a sentence that was cut short by the next one'
 
 _START = re.compile(r'[$!@](?=[A-Z][A-Z0-9]{2,9},)')

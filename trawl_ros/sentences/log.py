@@ -165,7 +165,7 @@ class SentenceLogReader:
         possible = []
         for sample in samples_of(chosen, assembly):
             if why := impossible(sample):
-                self.left[f'a reading that cannot be: {why}'] += 1
+                self.left[f'an impossible reading: {why}'] += 1
             else:
                 possible.append(sample)
         return possible
@@ -211,7 +211,7 @@ class SentenceLogReader:
         if row.is_clock:
             return None
         if row.passed_over:
-            self.left['a sentence that is passed over'] += 1
+            self.left['a sentence that is ignored'] += 1
             return None
         topics = [topic for topic in spoken.topics if self._rank(topic, spoken) is not None]
         if not topics:
@@ -296,7 +296,7 @@ class SentenceLogReader:
                     label = self._label(one.spoken)
                     self.left[f'{label} without a valid reading for {topic}{why}'] += 1
                 elif one.moment in false:
-                    self.left['a reading whose time cannot be'] += 1
+                    self.left['a reading with an impossible time'] += 1
                 else:
                     told[topic].append(one)
         return [

@@ -51,7 +51,7 @@ class ShipTimes:
             self.unused[f'{kind} with a time of day and no date'] += 1
             return None
         if not 0 <= stamp < END_NS:
-            self.impossible[f'{kind} of a year that cannot be'] += 1
+            self.impossible[f'{kind} of an impossible year'] += 1
             return None
         self._near = stamp
         if not self.moments or self.moments[-1] != stamp:

@@ -85,7 +85,7 @@ def test_the_time_of_day_goes_on_over_midnight(run):
 
 def test_a_clock_time_that_a_zone_had_twice_is_refused(run):
     log = 't,p\n2026-10-25 02:30:00,1\n'
-    with pytest.raises(LogError, match='clocks of Europe/Oslo are set; utc_offset_h in place'):
+    with pytest.raises(LogError, match='clocks of Europe/Oslo change; use utc_offset_h instead'):
         run(log, 'clock: {columns: [t], format: iso, zone: Europe/Oslo}\n' + PRESSURE)
 
 

@@ -90,7 +90,7 @@ def test_one_kind_of_sentence_tells_a_topic_and_the_others_are_counted(run):
     assert len(found['vessel/fix']) == 2
     assert said.left_out['RMC for vessel/fix, which GGA tells'] == 1
     assert said.left_out['RMC for vessel/velocity_ground, which VTG tells'] == 1
-    assert said.left_out['sentence $GPGSV, which no table has'] == 1
+    assert said.left_out['sentence $GPGSV, which is in no table'] == 1
 
 
 def test_without_the_better_sentence_the_next_one_tells(run):
@@ -109,7 +109,7 @@ def test_a_damaged_sentence_gives_nothing_and_is_counted(run):
     assert 'vessel/echo_sounder/depth' not in found
     assert said.left_out['a sentence whose checksum is wrong'] == 1
     assert said.left_out['sentence $SDDPT: no checksum'] == 1
-    assert said.left_out['a line that is no text'] == 1
+    assert said.left_out['a line that is not text'] == 1
 
 
 def test_a_sentence_cut_short_by_the_next_costs_only_itself(run):

@@ -35,7 +35,7 @@ def test_a_folder_that_no_demo_has_made_is_refused_and_left_as_it_is(tmp_path, s
     (tmp_path / 'bag' / 'mine').write_text('mine')
     if summary is not None:
         (tmp_path / 'summary.json').write_text(summary)
-    with pytest.raises(TrawlError, match='holds files that no demo has made'):
+    with pytest.raises(TrawlError, match='holds files that `trawl demo` has not written'):
         DemoFolder(tmp_path)
     assert (tmp_path / 'bag' / 'mine').read_text() == 'mine'
 

@@ -218,8 +218,8 @@ class ClockReader:
         offsets = {time.replace(tzinfo=self._zone, fold=fold).utcoffset() for fold in (0, 1)}
         if len(offsets) > 1:
             raise ValueError(
-                f'no time in the hour in which clocks of {self._clock.zone} are set; '
-                'utc_offset_h in place of zone would tell'
+                f'a time outside the hour in which clocks of {self._clock.zone} change; use '
+                'utc_offset_h instead of zone'
             )
         (offset,) = offsets
         return local - (offset or timedelta()) // timedelta(microseconds=1) * 1000

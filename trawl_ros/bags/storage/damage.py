@@ -76,7 +76,7 @@ def scan_records(
     size
         Its length in bytes.
     report
-        Takes a sentence, without the file's name, for each stretch that is stepped over, and how
+        Takes a sentence, without the file's name, for each stretch that is skipped, and how
         many bytes that is.
     """
     offset = len(MCAP0_MAGIC)
@@ -95,11 +95,11 @@ def scan_records(
         if following is None:
             break
         gap = following - offset
-        report(f'damaged at byte {offset}; {gap} bytes were stepped over', gap)
+        report(f'damaged at byte {offset}; {gap} bytes were skipped', gap)
         offset = following
     rest = size - offset
     report(
-        f'cut short or damaged at byte {offset}; what stands before is used'
+        f'cut short or damaged at byte {offset}; the data before it are used'
         + (f', {rest} bytes behind are not' if rest > 0 else ''),
         max(rest, 0),
     )

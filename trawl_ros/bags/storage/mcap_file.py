@@ -311,7 +311,7 @@ class McapFile:
             self._damaged[piece.offset] = piece.length
             self._report(
                 f'{self.path}: the chunk at byte {piece.offset} is damaged ({reason}) '
-                'and was stepped over'
+                'and was skipped'
             )
             return None
         return records

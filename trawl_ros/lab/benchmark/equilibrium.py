@@ -1,4 +1,4 @@
-"""Steady states of the full gear, warm and cold, beside tools that solve less."""
+"""Steady states of the full gear, warm and cold, compared with codes that solve less."""
 
 import math
 from collections.abc import Callable
@@ -26,7 +26,7 @@ COLD_S, STABLE_S = 0.2, 0.25
 OVER_TRAWLKIT = 50.0
 
 CHANGES = ((20.0, 0.0), (-20.0, 0.0), (0.0, 0.05), (0.0, -0.05), (100.0, 0.0), (-100.0, 0.0))
-"""Of warp length (m) and speed (m/s), from 500 m and 2.1 m/s."""
+"""Changes of warp length (m) and speed (m/s), from 500 m and 2.1 m/s."""
 
 COLD_POINTS = ((300.0, 2.1), (500.0, 1.9), (500.0, 2.1), (700.0, 2.1), (900.0, 2.1))
 
@@ -38,7 +38,7 @@ PARTS: dict[str, Part] = {
     'forces': forces,
     'solutions': Factor.solve,
 }
-"""Functions that a search for a root is made of."""
+"""Main functions of a search for a steady state."""
 
 TRAWLKIT_COARSE = 2
 """Divisions per panel of the small version; the default is trawlkit's own."""
@@ -49,7 +49,7 @@ def _point(length: float, speed: float) -> OperatingPoint:
 
 
 def measure(small: bool) -> Findings:
-    """Time steady states near a known one, from nothing, and with the check of stability."""
+    """Time steady states from a known one, from a cold start, and with the check of stability."""
     model = build_model(default_gear(small=small))
     repeats = 1 if small else 5
     known = find_equilibrium(model, _point(500.0, 2.1))
@@ -118,7 +118,7 @@ def measure(small: bool) -> Findings:
 
 
 def _kernels(model: GearModel, known: Equilibrium) -> str:
-    """Times of what an iteration is made of, in words."""
+    """Return the times of the parts of an iteration in words."""
     at = model, known.state, known.tow
     here = linearised(*at)
     factor = factorised(model.pattern, here.stiffness)
@@ -191,7 +191,7 @@ def _beside_trawlkit(warm_s: float, cold_s: float, *, small: bool) -> list[Measu
 
 
 def trawlkit_s(*, small: bool) -> list[float]:
-    """CPU time (s) of each speed in trawlkit's own example, every one but the first warm."""
+    """CPU time (s) of each speed in trawlkit's own example; all but the first start warm."""
     trawlkit, sim = peer('trawlkit'), peer('trawlkit.sim')
     case = trawlkit.run(peer('trawlkit.sim.validation').standard_case())
     start, times = None, []

@@ -41,7 +41,7 @@ SEED = 1
 
 
 def plant_of(gear: GearRecord) -> GearModel:
-    """A gear unlike its model: its net has more drag."""
+    """Gear that differs from its model: its net has more drag."""
     drag = {'normal_drag': gear.netting.normal_drag * MORE_DRAG}
     return build_model(gear.model_copy(update={'netting': gear.netting.model_copy(update=drag)}))
 
@@ -49,7 +49,7 @@ def plant_of(gear: GearRecord) -> GearModel:
 def trial(
     plant: GearModel, lengths: Sequence[float], speeds: Sequence[float]
 ) -> list[SteadyWindow]:
-    """One window per steady state, with errors as large as those of the instruments."""
+    """One window per steady state, with errors of the size of the instruments' errors."""
     rng = np.random.default_rng(SEED)
     windows: list[SteadyWindow] = []
     found: Equilibrium | None = None
@@ -78,15 +78,15 @@ def trial(
 
 
 AROUND = 24
-"""Meshes around the net of the model: fewer than the default, for the rivals' sake."""
+"""Meshes around the net of the model: fewer than the default, to keep the rivals' runs short."""
 
 OVER_SEARCH, OVER_DIFFERENCES, FIT_S = 50.0, 10.0, 1.0
 
 PATIENCE = 1.04
-"""The coordinate search ends after this many times as many steady states as it is to need."""
+"""Budget of the coordinate search as a multiple of the steady states it is expected to need."""
 
 OPTIONS = EstimatorOptions(iterations_per_window=1, relinearise=2.0)
-"""All windows are known beforehand: no estimate is asked for on the way."""
+"""Options for windows that are all known beforehand: no estimate is needed on the way."""
 
 QUICK = EstimatorOptions(iterations_per_window=1, iterations_final=2, relinearise=2.0)
 
@@ -97,12 +97,12 @@ PARTS: dict[str, Part] = {
     'their slowest motions': slow_mode,
     'errors of instruments and tows': eliminate_nuisance,
 }
-"""Functions that a fit is made of."""
+"""Main functions of a fit."""
 
 
 @dataclass(frozen=True)
 class Fitted:
-    """Result of a fit: eq. 35, steady states that were solved, CPU time (s), its end."""
+    """Result of a fit: objective of eq. 35, number of steady states, CPU time (s), and its end."""
 
     objective: float
     solves: int

@@ -52,7 +52,7 @@ class Run:
 
 
 def measure(small: bool) -> Findings:
-    """Run the manoeuvre at one step after another."""
+    """Run the manoeuvre with one step size after another."""
     model = build_model(default_gear(small=small))
     haul = haul_of(model, 20.0 if small else 300.0)
     finest = 0.25 if small else CONVERGED_S

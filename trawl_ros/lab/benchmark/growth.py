@@ -1,4 +1,4 @@
-"""Growth of time and memory as the net is refined, around and along alike."""
+"""Growth of time and memory as the net is refined, around and along together."""
 
 import sys
 from collections.abc import Sequence
@@ -20,8 +20,7 @@ from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import StepFailed
 
 AROUND = (12, 24, 36, 48, 72, 84, 96, 108)
-"""Meshes around, from less than 150 net nodes to more than 5000; rows are as short as keeps the
-angle of the meshes."""
+"""Meshes around, for less than 150 to more than 5000 net nodes; rows keep the mesh angle."""
 
 MOST_NODES = 5000.0
 
@@ -62,7 +61,7 @@ class GrowthSize:
 
 
 def measure(small: bool) -> Findings:
-    """Time one refinement after another."""
+    """Measure one refinement after another."""
     gear = default_gear(small=False)
     sizes, refused = [], 'no finer one was tried'
     for around in AROUND[:2] if small else AROUND:
@@ -153,7 +152,7 @@ def _size(model: GearModel, *, small: bool) -> GrowthSize:
 
 
 def peak_mb() -> float:
-    """Largest resident memory of this process so far, MB; NaN where the system does not say."""
+    """Largest resident memory of this process so far, MB; NaN if the system does not provide it."""
     if sys.platform == 'win32':
         return float('nan')
     import resource

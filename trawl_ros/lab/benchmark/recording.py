@@ -1,4 +1,4 @@
-"""Losses and cost of the recorder at the rates of the full chain."""
+"""Losses and cost of the recorder at the rates of all topics together."""
 
 import json
 import math
@@ -19,7 +19,7 @@ from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import NodeFailed, Processes
 
 RATES_HZ = (500.0, 1000.0)
-"""The first is what is asked for."""
+"""Total message rates; the first one has the target."""
 
 SECONDS = 60.0
 SMALL_SECONDS = 1.0
@@ -31,8 +31,8 @@ RECORDER = 'bag_recorder'
 class Recorded:
     """Recording: messages by full topic name as published and as in the bag, and its cost.
 
-    ``behind_s`` is wall time by which the publisher fell behind for good, ``cpu_s`` the
-    recorder's, its start included.
+    ``behind_s`` is the wall time by which the publisher fell behind, and ``cpu_s`` the CPU time of
+    the recorder, with its start.
     """
 
     published: Mapping[str, int]

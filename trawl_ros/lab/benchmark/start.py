@@ -1,4 +1,4 @@
-"""Start-up time of the nodes to their first message, its share by imports, and their memory."""
+"""Start-up time of the nodes to their first message, the share of imports, and memory."""
 
 import math
 import os
@@ -62,7 +62,7 @@ TOW = Start('sim_node', 'truth/winch')
 
 
 def starts(folder: Path) -> tuple[Start, ...]:
-    """All nodes' starts; those without a stream of their own report on /diagnostics."""
+    """Return the starts of all nodes; nodes without a topic of their own report on /diagnostics."""
     return (
         Start('bag_recorder', '/diagnostics', {'output': str(folder / 'bag')}),
         Start('identification_node', '/diagnostics'),
@@ -169,7 +169,7 @@ def _begun(start: Start, folder: Path, environment: Mapping[str, str], repeats: 
 
 
 def _forget(folder: Path) -> None:
-    """Move the bag of a recorder away, for the next one needs an empty place."""
+    """Rename the bag of a recorder, since the next recorder needs a new path."""
     bag = folder / 'bag'
     if bag.exists():
         bag.rename(folder / f'bag_{time.monotonic_ns()}')

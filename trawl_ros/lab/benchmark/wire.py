@@ -1,4 +1,4 @@
-"""Speed of one towed wire through a manoeuvre, here and in MoorDyn, at steps of like error."""
+"""Speed of one towed wire through a manoeuvre, here and in MoorDyn, at steps of equal error."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -26,7 +26,7 @@ SEGMENTS = 20
 OVER_MOORDYN = 1.5
 
 LIMIT = 0.01
-"""Largest error against a program's own converged run, of depth and tension at any time."""
+"""Largest error of depth and tension at any time, against the program's own converged run."""
 
 OWN_CONVERGED = 0.1
 OWN_STEPS = (4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.5)
@@ -35,7 +35,7 @@ OWN_STEPS = (4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.5)
 CONVERGED = ('RK4', 0.002)
 
 COUPLING = 0.2
-"""Time (s) of uniform motion of the block in MoorDyn: few calls of it, and still exact."""
+"""Time (s) of uniform motion of the block in MoorDyn: exact, with few calls."""
 
 SETTLING = 200.0
 
@@ -58,8 +58,11 @@ CHOICES = (
     SchemeChoice('RK2', 0.004, (0.008, 0.007, 0.006, 0.005, 0.004)),
     SchemeChoice('RK4', 0.002, (0.010, 0.009, 0.008, 0.007, 0.006)),
 )
-"""Of its other schemes, Heun's is unstable from 3 ms on, the implicit ones converge only at
-steps that leave them slower, and the multistep ones break down."""
+"""Tested schemes of MoorDyn.
+
+Of its other schemes, Heun's is unstable from 3 ms on. The implicit ones converge only at steps that
+make them slower, and the multistep ones break down.
+"""
 
 
 @dataclass(frozen=True)
@@ -72,11 +75,11 @@ class Fastest:
 
 
 Run = Callable[[float], History]
-"""The manoeuvre in steps of that many seconds."""
+"""Function that runs the manoeuvre with a step size, s."""
 
 
 def measure(small: bool) -> Findings:
-    """Find the longest step within the limit, here and for each scheme of MoorDyn."""
+    """Find the longest step within the error limit, here and for each scheme of MoorDyn."""
     manoeuvre = short_manoeuvre() if small else haul_and_turn()
     ours = fastest(*_own(manoeuvre), small=small)
     rows = [_own_row(ours)]
@@ -110,7 +113,7 @@ def measure(small: bool) -> Findings:
 
 
 def fastest(run: Run, steps: Sequence[float], converged: History, *, small: bool) -> Fastest | None:
-    """The longest of steps from long to short within the limit; None when there is none."""
+    """Return the longest step, from long to short, within the limit; None if there is none."""
     for step in steps:
         try:
             first = run(step)
@@ -148,7 +151,7 @@ def _peer(choice: SchemeChoice, manoeuvre: WireManoeuvre, *, small: bool) -> Fas
 
 
 def moordyn_history(wire: TowedWire, scheme: str, step: float, manoeuvre: WireManoeuvre) -> History:
-    """The manoeuvre in MoorDyn after a straight tow.
+    """Run the manoeuvre in MoorDyn after a straight tow.
 
     Raises
     ------

@@ -23,7 +23,7 @@ SMALL = 'It ran in its small version, which shows that it runs and says nothing 
 
 @dataclass(frozen=True)
 class MeasuredModule:
-    """Module that was run, with its ``seconds`` of wall clock."""
+    """Findings of one module, with its wall-clock time, s."""
 
     name: str
     findings: Findings
@@ -62,7 +62,7 @@ def write_benchmark(
 
 
 def row_record(row: MeasuredValue) -> dict[str, object]:
-    """Row as plain values; what could not be measured is null."""
+    """Return a row as plain values; unmeasured values are null."""
     return {
         'what': row.what,
         'value': finite(row.value),
@@ -77,13 +77,15 @@ def row_record(row: MeasuredValue) -> dict[str, object]:
 @click.argument('names', nargs=-1, metavar='[NAME]...')
 @REPORT_OPTION
 @FORCE_OPTION
-@click.option('--small', is_flag=True, help='Everything on less, in seconds.')
+@click.option(
+    '--small', is_flag=True, help='Small version of every benchmark, which takes seconds.'
+)
 def command(names: tuple[str, ...], out: Path, force: bool, small: bool) -> None:
-    """Measure speed and growth, and set them beside other tools.
+    """Measure speed and its growth with the net, and compare it with other codes.
 
     Runs every benchmark, or those named, one after another, and writes benchmark.json,
-    .md, .html and their figures. A target that is missed is part of the report; the exit code
-    is 0 whenever the report is complete. Ctrl-C ends it without a report.
+    .md, .html and their figures. The report lists missed targets; the exit code is 0 if the
+    report is complete. Ctrl-C ends the command without a report.
     """
     chosen = tuple(dict.fromkeys(names)) or NAMES
     check_names(chosen)

@@ -40,17 +40,16 @@ SHOWN = {
     'vertical_opening': 'm',
     'port_tension': 'kN',
 }
-"""Channels that are printed, with the units in which one reads them."""
+"""Printed channels with their display units."""
 
 
 def tow_repaired(scenario: str, model: Path, sea: Path, bag: Path, console: Console) -> None:
-    """Tow a repaired gear by `sim_node` in the first state of a tow, and print both beside.
+    """Tow a repaired gear with `sim_node` in the first state of a tow, and print both results.
 
     Parameters
     ----------
     scenario
-        Packaged scenario of the tow at sea; of its water the repaired gear knows what it is told
-        by ``model`` alone.
+        Packaged scenario of the tow at sea; the repaired gear takes its water from ``model`` only.
     model
         Gear file with the effect that was found.
     sea
@@ -77,7 +76,7 @@ def tow_repaired(scenario: str, model: Path, sea: Path, bag: Path, console: Cons
     }
     path.write_text(yaml.safe_dump(content, sort_keys=False), encoding='utf-8')
     with (
-        console.status('towing the repaired gear by sim_node'),
+        console.status('towing the repaired gear with sim_node'),
         own_graph(bag.parent / 'log') as environment,
         Processes(bag.parent / 'log', environment) as processes,
     ):
@@ -107,13 +106,13 @@ def _print(sea: SteadyWindow, gear: str, repaired: SteadyWindow) -> None:
         shown = (f'{value / UNITS[unit].size:.1f}' for value in values)
         table.add_row(f'{name.replace("_", " ")} ({unit})', *shown)
     console = output_console()
-    console.print('The first state again, by sim_node and all instruments, with the repaired gear:')
+    console.print('The first state again, with the repaired gear, sim_node and all instruments:')
     console.print(table)
 
 
 BASELINE = 'baseline'
 TOWS = ('tow_1', 'tow_2', 'tow_3')
-"""Bags, each of the scenario of its name with ``hidden_`` before it."""
+"""Bags; the scenario of each has ``hidden_`` ahead of its name."""
 
 FOUND = 'diagnosis'
 REPAIRED = 'repaired'
@@ -124,7 +123,7 @@ NO_DISCREPANCY, DISCREPANCY = 0, 10
 
 
 class Commands:
-    """Runner of ``trawl`` commands in a folder; leaving the context ends those that still run.
+    """Runner of ``trawl`` commands in a folder; leaving the context ends running commands.
 
     Parameters
     ----------
@@ -137,7 +136,7 @@ class Commands:
         self._running: list[subprocess.Popen[str]] = []
 
     def run(self, *words: str, expected: int = 0) -> str:
-        """Run a command to its end, and give what it printed.
+        """Run a command to its end, and return its output.
 
         Raises
         ------
@@ -171,22 +170,22 @@ class Commands:
 
 
 def hidden_effect(folder: Path, console: Console) -> None:
-    """Tow in water that the model does not know, diagnose the bags, and again with the repair.
+    """Diagnose tows in a current that the model lacks, and again with the repaired gear.
 
-    Writes bags and reports into ``folder``, one of the repaired gear towed by `sim_node` among
-    them, and prints the commands and what they find.
+    Writes bags and reports into ``folder``, also of the repaired gear towed by `sim_node`, and
+    prints the commands and their results.
 
     Raises
     ------
     TrawlError
-        If a command fails, the current is not found, or the repaired gear leaves something over.
+        If a command fails, the current is not found, or a discrepancy remains afterwards.
     """
     made_folder(folder)
     bags = (BASELINE, *TOWS)
     diagnose = ('diagnose', *TOWS, '--baseline', BASELINE, '--out')
     with ThreadPoolExecutor(cores()) as pool, Commands(folder) as commands:
         towing = [_shown('tow', f'hidden_{bag}', '--out', bag) for bag in bags]
-        with console.status('towing in a current that the model does not know'):
+        with console.status('towing in a current that the model lacks'):
             try:
                 list(pool.map(lambda words: commands.run(*words), towing))
             except BaseException:
@@ -197,7 +196,7 @@ def hidden_effect(folder: Path, console: Console) -> None:
         click.echo(found)
         model = folder / FOUND / MODEL
         if not model.is_file():
-            raise TrawlError(f'{model.parent}: no effect has a name there, expected the current')
+            raise TrawlError(f'{model.parent}: no effect was named; expected the current')
         tow_repaired(f'hidden_{TOWS[0]}', model, folder / TOWS[0], folder / REPAIRED, console)
         repaired = ('--gear', f'{FOUND}/{MODEL}')
         with console.status('diagnosing with the repaired gear'):

@@ -75,7 +75,7 @@ def apart(history: History, reference: History) -> Apart:
 
 
 TURN_RATE = float(np.radians(0.5))
-"""Of the ship in the turn, rad/s."""
+"""Rate of turn of the ship, rad/s."""
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ def haul_and_turn(length: float = 600.0, speed: float = 2.0) -> WireManoeuvre:
 
 
 def short_manoeuvre(length: float = 600.0, speed: float = 2.0) -> WireManoeuvre:
-    """The beginnings of both: 10 m of hauling and 20° of turn."""
+    """Return a short version: 10 m of hauling and 20° of turn."""
     haul = Pace(start=5.0, total=-10.0, top=-0.5, rise=10.0)
     turn = Pace(start=haul.end, total=pi / 9, top=TURN_RATE, rise=20.0)
     return WireManoeuvre(length, speed, haul, turn, duration=turn.end + 10.0)

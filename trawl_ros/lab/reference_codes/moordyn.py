@@ -17,7 +17,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.absent import PeerFailed, peer
 
 DEEP = 3000.0
-"""Depth of water (m) at which nothing touches the bottom."""
+"""Water depth (m) at which nothing touches the bottom."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Options:
 def input_file(
     kinds: Sequence[LineType], points: Sequence[Point], lines: Sequence[Line], options: Options
 ) -> str:
-    """Text of an input file (version 2)."""
+    """Return the text of an input file (version 2)."""
     return '\n'.join(
         [
             '--- MoorDyn ---',
@@ -227,7 +227,7 @@ class MoorDyn:
         return float(self._module.GetLineUnstretchedLength(self._line(line)))
 
     def wind(self, line: int, rate: float) -> None:
-        """Set the rate (m/s) of change of a line's (from 0) unstretched length."""
+        """Set the rate of change (m/s) of the unstretched length of a line (from 0)."""
         self._module.SetLineUnstretchedLengthVel(self._line(line), rate)
         # MoorDyn 2.7 gives back None without taking a reference to it, and before Python 3.12
         # the process dies when the last one is gone; this puts the reference back.

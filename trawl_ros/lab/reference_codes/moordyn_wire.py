@@ -23,7 +23,7 @@ COUPLING = 0.1
 """Longest time (s) over which MoorDyn sees the block in uniform motion."""
 
 SETTLING = 2500.0
-"""Time (s) in which the wire comes to rest from the straight line it starts as."""
+"""Time (s) in which the wire reaches its steady state from a straight line."""
 
 
 class MoorDynWire:
@@ -81,7 +81,7 @@ class MoorDynWire:
         self._system = MoorDyn(text, self._block, wire.speed * np.array([1.0, 0.0, 0.0]))
 
     def settle(self, duration: float = SETTLING) -> WireSteadyState:
-        """Tow straight on; return the final state."""
+        """Tow straight ahead; return the final state."""
         velocity = self._wire.speed * np.array([1.0, 0.0, 0.0])
         force = np.zeros((1, 3))
         for _ in range(round(duration / self._coupling)):
@@ -90,7 +90,7 @@ class MoorDynWire:
         return WireSteadyState(float(off[2]), float(off[0]), float(np.linalg.norm(force)))
 
     def follow(self, manoeuvre: WireManoeuvre) -> History:
-        """Follow a manoeuvre; positions are those of the ends of steps."""
+        """Follow a manoeuvre; positions are those at the ends of steps."""
         count = round(manoeuvre.duration / self._coupling)
         times = self._coupling * np.arange(count + 1, dtype=float)
         track = manoeuvre.track(times)

@@ -13,10 +13,10 @@ from trawl_ros.lab.reference_codes.moordyn import DEEP
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire, WireSteadyState
 
 PARTS = 40
-"""Pieces of the line's shape over which MoorPy sums its drag."""
+"""Number of pieces of the line over which MoorPy sums its drag."""
 
 MOVED = 1e-4
-"""Move of the lump (m) between two solutions below which they are one."""
+"""Tolerance of the lump's position (m) between two solutions."""
 
 ROUNDS = 50
 

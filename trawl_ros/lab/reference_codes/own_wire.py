@@ -20,7 +20,7 @@ TRACK_STEP = 0.1
 
 
 def own_model(wire: TowedWire, segments: int) -> GearModel:
-    """The wire cut into ``segments`` bars, with its lump."""
+    """Return the wire in ``segments`` bars, with its lump."""
     model = lone_line(
         {
             'diameter_m': wire.diameter,

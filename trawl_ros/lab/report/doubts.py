@@ -1,4 +1,4 @@
-"""Doubts about assumed numbers: how far one of them may be off, and what a point needs of it."""
+"""Factors on an assumed number that bring a point near its measured value."""
 
 import math
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ from itertools import pairwise
 from trawl_ros.report.rendering import number
 
 STEPS = 4000
-"""Steps into which a range of factors is cut to look for those that a point needs."""
+"""Number of steps of a range of factors in this search."""
 
 
 def factors_needed(
@@ -48,7 +48,7 @@ def factors_needed(
 
 
 def need_in_words(values: Mapping[float, float], measured: float, tolerance: float) -> str:
-    """Factors that a point needs, in words; what was tried where none is enough."""
+    """Return the factors that a point needs in words, or that none of those tried is enough."""
     needed = factors_needed(values, measured, tolerance)
     if needed is None:
         return 'not enough'

@@ -21,7 +21,7 @@ Part = object
 
 
 def shares(work: Callable[[], object], parts: Mapping[str, Part]) -> str:
-    """Run once under the profiler of Python, and tell what part of it each function took.
+    """Run once under Python's profiler, and return the share of each function.
 
     Parameters
     ----------
@@ -57,19 +57,19 @@ def _cumulative(profile: cProfile.Profile) -> dict[CodeType, float]:
 
 
 def _code(part: Part) -> CodeType:
-    """Code of a function, of its Python source where it is compiled."""
+    """Return the code of a function, or of its Python source if it is compiled."""
     code = getattr(getattr(part, 'py_func', part), '__code__', None)
     assert isinstance(code, CodeType)
     return code
 
 
 NO_BYTECODE = 'PYTHONDONTWRITEBYTECODE'
-"""Variable with which each process compiles anew whatever it imports, as no user's does."""
+"""Variable that makes each process compile all its imports again; users do not set it."""
 
 
 @contextmanager
 def bytecode_kept(*modules: str) -> Iterator[None]:
-    """Let child processes keep and use bytecode; that of some modules is there from the start."""
+    """Let child processes write and use bytecode; compile that of some modules beforehand."""
     before = os.environ.pop(NO_BYTECODE, None)
     try:
         if modules:
@@ -104,7 +104,7 @@ def median_s(work: Callable[[], object], repeats: int) -> float:
 
 
 NUMBER_BYTES = 8
-"""Of one number in the factors, whose places the gear has once."""
+"""Bytes of one number in the factors; their sparsity pattern is stored once per gear."""
 
 
 def factor_cost(model: GearModel, state: State, tow: Tow, repeats: int) -> tuple[float, float]:
