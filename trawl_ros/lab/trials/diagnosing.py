@@ -18,7 +18,7 @@ from trawl_ros.records.topics import NAMESPACE
 
 
 def write_windows(path: Path, windows: Sequence[SteadyWindow]) -> None:
-    """Write windows, whole or not at all."""
+    """Write windows completely or not at all."""
     write_json(path, [asdict(window) for window in windows])
 
 
@@ -53,7 +53,7 @@ class DiagnosisTask:
 
 
 def diagnose_case(case: DiagnosisTask) -> str:
-    """Diagnose, write the diagnosis, and give its verdict."""
+    """Diagnose, write the diagnosis, and return its verdict."""
     gear = load_gear(case.gear)
     windows, tows = _of_bags(case.seen, gear) if case.seen.is_dir() else _of_file(case.seen)
     found = diagnose_windows(gear, windows, tows, frozenset(range(case.baseline)))

@@ -1,4 +1,4 @@
-"""Plants of the trials, the models fitted to them, and what drawn boards show."""
+"""Plants of the blind cases, the models fitted to them, and the observables of drawn boards."""
 
 from dataclasses import dataclass
 from itertools import chain

@@ -1,4 +1,4 @@
-"""Checks of a map of steady states: the usable ones form one branch, the good one."""
+"""Checks of a map of steady states: all usable states form one branch."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -13,11 +13,12 @@ from trawl_ros.model.observables import COLLAPSED_NORMAL, outward_normal_lift
 from trawl_ros.records.observables import Observables
 
 PATIENCE = 2.0
-"""Longest CPU time (s) an answer may take."""
+"""Longest allowed CPU time of an answer, s."""
 
 JUMP = 5.0
-"""Change of the attack angle (°) between neighbours above which a branch has been left: less
-than half of what parts the boards' usual angles from the collapsed ones known of this gear.
+"""Change of the attack angle (°) between neighbours that indicates another branch.
+
+It is less than half the difference between the boards' usual angles and the known collapsed ones.
 """
 
 GROWING: dict[str, Callable[[Observables], float]] = {

@@ -119,7 +119,7 @@ def angle_figure(lattices: Sequence[Lattice]) -> Figure:
 
 
 def draw_map(axes: Axes, lattice: Lattice) -> None:
-    """Colour each place by its verdict and write the attack angle into it, where a root is."""
+    """Colour each place by its verdict, and write the attack angle if there is a root."""
     kinds = list(LOOKS)
     shape = len(lattice.lengths), len(lattice.columns)
     codes = np.array(

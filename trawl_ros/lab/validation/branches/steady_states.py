@@ -1,4 +1,4 @@
-"""Steady states of the default gear over its conditions: existence, and absence of collapse."""
+"""Steady states of the default gear over its operating conditions: existence, and no collapse."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -48,7 +48,7 @@ TURNS: Mapping[str, tuple[float, float]] = {
 """Attitudes (°) of a collapsed board: leading edge outward, outward normal up."""
 
 FOLDED = 0.05
-"""Width of a folded gear as a share of what it was."""
+"""Width of a folded gear as a share of its original width."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def turned_boards(turn: tuple[float, float]) -> FloatArray:
 
 
 def collapsed_shapes(shape: State) -> list[State]:
-    """A shape with both boards or one of them collapsed, and the whole gear folded."""
+    """Return a shape with both boards or one board collapsed, and with the whole gear folded."""
     shapes = []
     for turn in TURNS.values():
         both = turned_boards(turn)
@@ -96,7 +96,7 @@ def tally(
     shapes: Sequence[State],
     good: Equilibrium | None,
 ) -> OutcomeTally:
-    """Search at a point from collapsed shapes; ``good`` is its steady state, None for none."""
+    """Search at a point from collapsed shapes; ``good`` is its steady state, or None."""
     same, other = 0, 0
     refused: Counter[str] = Counter()
     for shape in shapes:
@@ -119,7 +119,7 @@ FACTORISATIONS = 21
 """Number of factorisations that are timed."""
 
 SHORTEST = 200.0
-"""Warp length (m) from which it is; on shorter warps netting hangs slack."""
+"""Shortest towing warp, m; on shorter warps netting is slack."""
 
 BOWING = 317.0
 """Load (Pa) under which twine bows: that of water on meshes towed at 2.1 m/s with bars at 20° to
@@ -161,7 +161,7 @@ SMALL = SearchSize(
     hopeless_starts=1,
 )
 HOPELESS = 500.0, 1.5
-"""A warp length (m) and speed (m/s) at which the gear cannot be towed."""
+"""Warp length (m) and speed (m/s) at which the gear cannot be towed."""
 
 
 def run(small: bool) -> Findings:
@@ -230,7 +230,7 @@ def _without_reason(speeds: Lattice) -> MeasuredValue:
 
 
 def _bowed(model: GearModel, size: SearchSize) -> MeasuredValue:
-    """Usable places on the shortest warp, with twine that bows under the water's load."""
+    """Check the usable places on the shortest warp, with twine that bows under the water's load."""
     netting = model.gear.netting.model_copy(update={'bowing_pressure_pa': BOWING})
     bowed = build_model(model.gear.model_copy(update={'netting': netting}))
     length, refused = size.lengths[0], []
@@ -254,7 +254,7 @@ def _bowed(model: GearModel, size: SearchSize) -> MeasuredValue:
 
 
 def _in_factorisations(rows: Sequence[MeasuredValue], factor_s: float) -> Iterator[MeasuredValue]:
-    """Rows with the longest CPU time told in factorisations too, whatever the machine."""
+    """Express the longest CPU time in factorisations too, which does not depend on the machine."""
     for row in rows:
         if row.key != 'speed_slowest':
             yield row
@@ -294,7 +294,7 @@ def _working(key: str, what: str, lattices: Sequence[Lattice]) -> MeasuredValue:
 
 
 def _collapsed(model: GearModel, size: SearchSize) -> tuple[list[MeasuredValue], TextTable]:
-    """Search from collapsed shapes, with and without a steady state at hand."""
+    """Search from collapsed shapes, with and without a known steady state."""
     rows = []
     tallies: list[OutcomeTally] = []
     goods: list[Equilibrium] = []
@@ -335,7 +335,7 @@ def _row(length: float, speed: float, counted: OutcomeTally) -> tuple[str, ...]:
 
 
 def _overturned(model: GearModel, good: Equilibrium) -> MeasuredValue:
-    """Check that boards set so far in that they collapse are refused, whatever the start."""
+    """Check that boards installed at an angle at which they collapse are always refused."""
     overturned = model.with_board(installation=(OVERTURNED, 0.0, 0.0))
     tow = steady_tow(overturned, good.point)
     collapsed, _, left = relax(overturned, good.state, tow, tolerance=1e-3, time_step=10.0)

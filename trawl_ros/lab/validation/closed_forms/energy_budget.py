@@ -28,7 +28,7 @@ RATE, RAMP = 0.4, 8.0
 """Speed of hauling (m/s), and how long (s) the winches take to come up to it and to stop."""
 
 BEGIN = 10.0
-"""Seconds of steady tow before."""
+"""Duration of the steady tow before, s."""
 
 STEPS = (0.4, 0.2, 0.1)
 USUAL = 0.2
@@ -60,7 +60,7 @@ class WireHaul:
         return float(wire), float(rate)
 
     def boundary(self, tow: Tow, t: float) -> Tow:
-        """Towing boundary at a time, on from a steady tow."""
+        """Towing boundary at a time after a steady tow."""
         wire, rate = self.hauled(t)
         return replace(
             tow,
@@ -144,7 +144,7 @@ def budget(model: GearModel, start: Equilibrium, haul: WireHaul, h: float) -> Bu
 def advanced(
     stepper: Stepper, now: BudgetInstant, boundary: Callable[[float], Tow], h: float, halvings: int
 ) -> list[BudgetInstant]:
-    """Advance by one step; a step that fails is taken in halves, as a simulation does."""
+    """Advance by one step; a step that fails is halved, as in a simulation."""
     tow = boundary(now.time + h)
     try:
         return [BudgetInstant(now.time + h, stepper.step(now.motion, tow, h), tow)]
@@ -156,7 +156,7 @@ def advanced(
 
 
 def run(small: bool) -> Findings:
-    """Haul with shorter and shorter steps."""
+    """Haul with decreasing steps."""
     gear = load_gear('kaifuha')
     if small:
         gear = gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})

@@ -23,13 +23,13 @@ VOID = Water(density=1e-12, gravity=0.0)
 
 SECONDS = 100.0
 STEPS = (0.8, 0.4, 0.2)
-"""Time steps (s), the last being that of a simulation."""
+"""Time steps (s); the last one is that of a simulation."""
 
 SHORT = 0.05
 """A step (s) much shorter than a simulation's."""
 
 RATES = 0.2 * np.array([[1.0, 0.01, 0.02], [0.4, 0.5, 0.6]])
-"""First rates of turn of both boards about their own axes, rad/s."""
+"""Initial rates of turn of both boards about their own axes, rad/s."""
 
 
 @dataclass(frozen=True)
@@ -54,9 +54,9 @@ class Spin:
 
 
 def spinning() -> tuple[GearModel, State, Tow]:
-    """Two boards of the default gear that spin, port about its axis of middle inertia.
+    """Return two spinning boards of the default gear, port about its axis of middle inertia.
 
-    There a spin is unstable: that board tumbles.
+    This spin is unstable: the board tumbles.
     """
     model = lone_line(WIRE, 3, VOID)
     tow = holding(60.0, np.zeros(3), np.zeros(3))
@@ -100,7 +100,7 @@ def momentum_and_energy(model: GearModel, state: State) -> tuple[FloatArray, flo
 
 
 def spun(h: float, seconds: float) -> Spin:
-    """The boards' motion as the stepper has it in steps of ``h`` seconds."""
+    """Return the boards' motion by the stepper, in steps of ``h`` seconds."""
     model, state, tow = spinning()
     inertia = model.pattern.matrix(mass(model, state, tow)).toarray()
     first = np.linalg.solve(inertia, forces(model, state, tow))
@@ -127,7 +127,7 @@ def spun(h: float, seconds: float) -> Spin:
 
 
 def run(small: bool) -> Findings:
-    """Spin with shorter and shorter steps."""
+    """Let the boards spin with decreasing steps."""
     seconds = 0.5 * SECONDS if small else SECONDS
     spins = {h: spun(h, seconds) for h in (STEPS if small else (*STEPS, SHORT))}
     momentum = {h: float(spin.momentum.max()) for h, spin in spins.items()}

@@ -1,4 +1,4 @@
-"""Free line that sinks in still water, against the speed at which drag balances its weight."""
+"""Free line sinking in still water, compared with the speed at which drag balances its weight."""
 
 from dataclasses import dataclass
 
@@ -16,15 +16,15 @@ from trawl_ros.solver.stepper import Motion, Stepper
 
 LENGTH, SEGMENTS = 200.0, 20
 SLOPES = (0.0, 30.0)
-"""Angles (degrees) of the line below the horizontal, its start being the upper end."""
+"""Angles (degrees) of the line below the horizontal; its start is the upper end."""
 
 SLACK = 1.0 - 2e-4
-"""Distance of the nodes over the segments' length: a line that is slack all along."""
+"""Distance of the nodes over the segments' length, for a line that is slack everywhere."""
 
 TIME_STEP = 0.01
 
 SECONDS = 8.0
-"""After which the slowest, along the sloping line, is within 1e-6 of its last speed."""
+"""Time (s) after which the slowest motion is within 1e-6 of its final speed."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ def terminal(slope: float) -> FloatArray:
 
 
 def fall(slope: float, times: FloatArray) -> FloatArray:
-    """Speeds (k, 2) m/s along and across a line let go from rest: U tanh(w t / m U).
+    """Speeds (k, 2) m/s along and across a line released from rest: U tanh(w t / m U).
 
-    Across the line the water it displaces is carried along (added mass 1), along it none is.
+    The mass m includes added mass across the line (coefficient 1), and none along it.
     """
     displaced = SEA.density * np.pi / 4 * WIRE['diameter_m'] ** 2
     own = WIRE['weight_in_water_n_m'] / SEA.gravity + displaced
@@ -73,7 +73,7 @@ def fall(slope: float, times: FloatArray) -> FloatArray:
 
 
 def sinking(slope: float, seconds: float) -> Sinking:
-    """A line let go from rest, as the stepper has it."""
+    """Return the motion of a line released from rest, by the stepper."""
     model = lone_line(
         {**WIRE, 'added_mass_normal': 1.0, 'added_mass_tangential': 0.0}, SEGMENTS, SEA, 'nowhere'
     )
@@ -100,7 +100,7 @@ def sinking(slope: float, seconds: float) -> Sinking:
 
 
 def run(small: bool) -> Findings:
-    """Let the line go level, and sloping."""
+    """Release a level line and a sloping one."""
     found = {slope: sinking(np.radians(slope), SECONDS) for slope in SLOPES}
     level, sloping = (found[slope] for slope in SLOPES)
     across_level = terminal(0.0)[1]

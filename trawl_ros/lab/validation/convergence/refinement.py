@@ -49,7 +49,7 @@ WORDS: Mapping[str, str] = {
 }
 
 SERIES = 12, 24, 36, 48
-"""Numerical meshes around the net of the series that is drawn."""
+"""Numerical meshes around the net in the drawn series."""
 
 DRAWN = (
     'door_spread',
@@ -104,7 +104,7 @@ def run(small: bool) -> Findings:
 
 
 def around_of(gear: GearRecord, around: int) -> GearRecord:
-    """The gear with another number of numerical meshes around the net."""
+    """Return the gear with another number of numerical meshes around the net."""
     netting = gear.netting.model_copy(update={'around': around})
     return gear.model_copy(update={'netting': netting})
 
@@ -115,7 +115,7 @@ def _checks(
     lengths: Sequence[float],
     series: Mapping[int, RefinementRow],
 ) -> Iterator[MeasuredValue]:
-    """One check for each way of refining and warp length: the worst of all observables."""
+    """Return one check per refinement and warp length: the worst of all observables."""
     for fine in finer:
         for k, length in enumerate(lengths):
             shares = 100.0 * np.abs(differences(default.seen[k], fine.seen[k]))
@@ -142,7 +142,7 @@ def _checks(
 
 
 def _reason(fine: RefinementRow, worst: int, k: int, series: Mapping[int, RefinementRow]) -> str:
-    """Reason why an observable has not converged, by the series of nets."""
+    """Return why an observable has not converged, by the series of nets."""
     if fine.name in ('warp', 'bridle'):
         return f'the {fine.name} is cut too coarsely for it.'
     counts = sorted(series)
@@ -157,7 +157,7 @@ def _reason(fine: RefinementRow, worst: int, k: int, series: Mapping[int, Refine
 def _tables(
     default: RefinementRow, fine: RefinementRow, lengths: Sequence[float]
 ) -> Iterator[TextTable]:
-    """Every observable beside that of the gear with everything finer."""
+    """Compare every observable with that of the gear with everything finer."""
     for k, length in enumerate(lengths):
         shares = 100.0 * differences(default.seen[k], fine.seen[k])
         plain = 100.0 * (default.seen[k] / fine.seen[k] - 1.0)
@@ -232,7 +232,7 @@ KINDS = {'straight': 0.0, 'bowed': BOWING}
 def bowed_nets(
     gear: GearRecord, counts: Sequence[int] = BOWED_MESHES_AROUND
 ) -> tuple[list[MeasuredValue], TextTable]:
-    """Solve the gear with all nets, cold, and compare the default's boards with the finest's."""
+    """Solve the gear with all nets, cold, and compare the default net with the finest one."""
     seen = {
         kind: {count: _observed(_netted(gear, count, pressure)) for count in counts}
         for kind, pressure in KINDS.items()

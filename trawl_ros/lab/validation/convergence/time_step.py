@@ -25,7 +25,7 @@ from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import Stepper, at_rest
 
 SAMPLE = 0.8
-"""Time (s) between the instants that are compared; a whole multiple of every step."""
+"""Time (s) between compared instants; a multiple of every step."""
 
 START = Command(port_length=500.0, starboard_length=500.0, speed=2.1)
 
@@ -33,7 +33,7 @@ HAULING = np.array([1.0, 0.8])
 """Share of the largest speed with which the port and starboard winch haul."""
 
 GAIN = 0.2
-"""Speed (m/s) that the ship gains meanwhile."""
+"""Increase of the ship's speed during the manoeuvre, m/s."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def smooth_tow(model: GearModel, tow: Tow, t: float, duration: float) -> Tow:
 def smooth_haul(
     model: GearModel, start: Equilibrium, step: float, duration: float
 ) -> SteppedManoeuvre:
-    """The stepper through the smooth manoeuvre, from a steady state."""
+    """Run the stepper through the smooth manoeuvre, from a steady state."""
     stepper, motion = Stepper(model), at_rest(start.state)
     each = round(SAMPLE / step)
     seen, places, tension = [], [], np.inf
@@ -123,8 +123,7 @@ def _places(state: State) -> FloatArray:
 
 
 ORDER = 1.9
-"""Observed order at which a method counts as of second order: its error falls to 27 % or less
-where the step is halved."""
+"""Smallest order that counts as second order: halving the step leaves 27 % of the error."""
 
 DEFAULT_STEP = 0.2
 """Step (s) of a tow at the simulation's default period."""
@@ -134,7 +133,7 @@ SLACK = 10.0
 """Tension (N) below which a bar of netting counts as slack."""
 
 TAUT = 1.0
-"""Lowest tension (N) at which nothing has gone slack."""
+"""Lowest tension (N) of a net that counts as taut throughout."""
 
 BOWING = 317.0
 """Load (Pa) under which twine bows in the gear of which nothing goes slack: that of water on meshes
@@ -177,7 +176,7 @@ class Convergence:
         return norm
 
     def order(self, errors: FloatArray) -> float:
-        """Slope of errors (steps,) over the step, both as logarithms."""
+        """Return the slope of errors (steps,) over the step, both logarithmic."""
         return float(np.polyfit(np.log(self.steps), np.log(errors), 1)[0])
 
     def orders(self) -> FloatArray:
@@ -287,7 +286,7 @@ def _smooth(model: GearModel, size: ManoeuvreSize) -> Convergence:
 
 
 def _taut_rows(taut: Convergence) -> Iterator[MeasuredValue]:
-    """Orders where nothing goes slack, and the tension that says so."""
+    """Rows on the orders of a gear without slack bars, and on its lowest tension."""
     yield MeasuredValue(
         'lowest tension of any bar at any time, smooth inputs, bowed twine',
         taut.tension,
@@ -315,7 +314,7 @@ def _taut_rows(taut: Convergence) -> Iterator[MeasuredValue]:
 
 
 def _flapping(model: GearModel, found: Convergence) -> str:
-    """Sentence on the point with the largest error at the shortest step, and on its slack lines."""
+    """Return a sentence on the point with the largest error at the shortest step."""
     worst = int(found.places[-1].argmax())
     if worst >= model.nodes:
         return 'The largest error is that of a board.'

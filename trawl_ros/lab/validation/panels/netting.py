@@ -38,7 +38,7 @@ from trawl_ros.report.pictures import Drawing
 def panel_loads(
     section: SectionRecord, net: NettingRecord, angle: float, slope: float, speed: float
 ) -> FloatArray:
-    """Drag and lift of a panel over ½ ρ U² and its area of twine.
+    """Drag and lift of a panel, divided by ½ ρ U² and its twine area.
 
     Parameters
     ----------
@@ -103,10 +103,10 @@ GEAR = 'krill_800'
 """Gear whose netting has the default law."""
 
 MEDIAN_PERCENT = 15.0
-"""Largest median error."""
+"""Largest allowed median error."""
 
 EXPONENTS = (1.4, 1.8)
-"""Exponents of drag in speed, as at sea and in flume tanks."""
+"""Range of exponents of drag in speed at sea and in flume tanks."""
 
 SMALL_ANGLES = (5.0, 30.0)
 """Angles (degrees) of most netting of trawls to the flow."""
@@ -150,7 +150,7 @@ def points_of(panel: PanelRecord, net: NettingRecord) -> list[PanelPoint]:
 
 
 def added_by_knots(knot: KnotRecord, net: NettingRecord) -> float:
-    """Drag of knotted netting over that of knotless netting, less one."""
+    """Drag of knotted netting over that of knotless netting, minus one."""
     with_knots, without = (
         panel_loads(
             netting_of(knot.solidity, 2.4e-3, knotless, square=False),

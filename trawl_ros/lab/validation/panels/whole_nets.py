@@ -50,7 +50,7 @@ class WholeNet:
 
     @property
     def inside(self) -> list[bool]:
-        """Flags of the speeds as built at which the drag is as large as asked for."""
+        """True for each speed at which the drag as built is within the range asked for."""
         return [
             LEAST_SHARE_OF_REID * reid(self.area, knots)
             <= drag

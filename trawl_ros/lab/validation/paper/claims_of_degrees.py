@@ -1,4 +1,4 @@
-"""Claims of section IV.D on 6-DOF and 3-DOF boards beside the sea trial, Fig. 13 to 16."""
+"""Claims of section IV.D on 6-DOF and 3-DOF boards against the sea trial, Fig. 13 to 16."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ ERRORS = {'door_spread': 4.8, 'door_depth': 4.5, 'net_depth': 7.4, 'warp_tension
 """Errors of the 6-DOF model that the paper reports, %."""
 
 CLOSE = 5.0
-"""Limit of close, %: the paper's own error against its trial."""
+"""Largest error that counts as close, %: the paper's own error against its trial."""
 
 DEPTHS = ('door_depth', 'net_depth')
 
@@ -32,7 +32,7 @@ def _words(channel: str) -> str:
 
 
 def _bias(seen: Comparison, channel: str) -> float:
-    """Mean of the 6-DOF predictions over that of the readings, less one, %."""
+    """Mean of the 6-DOF predictions over that of the readings, minus one, %."""
     one = column(channel)
     usable = np.isfinite(seen.trial_six[:, one])
     means = seen.trial_six[usable, one].mean(), seen.trial[usable, one].mean()

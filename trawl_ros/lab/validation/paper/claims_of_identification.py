@@ -9,7 +9,7 @@ from trawl_ros.lab.validation.paper.refit import PaperRefit
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 WORKING = np.radians(np.linspace(0.0, 30.0, 121))
-"""Attack angles of Fig. 5 that the paper speaks of."""
+"""Attack angles of Fig. 5 that the paper discusses."""
 
 UPPER = np.radians(np.linspace(15.0, 30.0, 61))
 
@@ -17,10 +17,10 @@ ALIKE = 0.1
 """Deviation of a coefficient that the paper calls good agreement."""
 
 EARLY = 1.0 / 3.0
-"""The initial stage: this part of all iterations."""
+"""Share of the iterations that counts as the initial stage."""
 
 UNLIKE = 10.0
-"""Sensitivities that lie further apart than this factor are unlike."""
+"""Ratio above which two sensitivities count as different."""
 
 
 def identification_claims(fit: PaperRefit) -> list[Claim]:

@@ -11,7 +11,7 @@ SPAN = (5.0, 10.0)
 """The paper's 5 to 10 %."""
 
 LITTLE = 0.5
-"""An effect below this part of the largest one counts as little."""
+"""Share of the largest effect below which an effect counts as small."""
 
 RESULTS = ('door_spread', 'door_depth', 'vertical_opening', 'warp_tension')
 

@@ -30,7 +30,7 @@ from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.relax import FORCE_TOLERANCE, relax, without_attitude
 
 FORCES = ('c1', 'c2', 'c3')
-"""Constants of eq. 14 that are C_x^F, C_y^F and C_z^F where the slopes are zero."""
+"""Constants of eq. 14 that equal C_x^F, C_y^F and C_z^F if the slopes are zero."""
 
 
 def point_board(model: GearModel, attack: float, slip: float) -> GearModel:

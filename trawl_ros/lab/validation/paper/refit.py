@@ -26,7 +26,7 @@ from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.predict import Prediction, Predictor
 
 STAND_STILL = EstimatorOptions(tolerance=1e9)
-"""No step is as large as this many std: windows are taken in, the coefficients stay."""
+"""Options with a tolerance so large that windows are added without changing the coefficients."""
 
 
 class _Remembering(Predictor):

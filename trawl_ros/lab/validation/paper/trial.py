@@ -20,7 +20,7 @@ BAG = ('bags', 'sea_trial')
 SCENARIO = ('bags', 'sea_trial.yaml')
 
 FEWER = 4
-"""In the small version every so many states are used."""
+"""The small version uses one state in this many."""
 
 
 @cache

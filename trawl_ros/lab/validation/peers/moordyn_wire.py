@@ -25,7 +25,7 @@ from trawl_ros.report.pictures import Drawing
 SEGMENTS = 20
 
 SHARE = 0.01
-"""Largest difference that is asked for, as a share."""
+"""Largest allowed difference, as a share."""
 
 OWN_STEP = 0.25
 """Step of this package's stepper, s; steps of 0.1 s change its histories by 1.2e-4 at most."""

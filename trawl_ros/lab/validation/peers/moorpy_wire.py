@@ -10,11 +10,11 @@ from trawl_ros.lab.validation.cases import ValidationCase
 SEGMENTS = 20
 
 SHARE = 0.01
-"""Largest difference that is asked for, as a share."""
+"""Largest allowed difference, as a share."""
 
 
 def run(small: bool) -> Findings:
-    """Solve the same steady tow in both programs; nothing is left out when ``small``."""
+    """Solve the same steady tow in both programs; ``small`` makes no difference."""
     _, ours = own_steady(WIRE, own_model(WIRE, SEGMENTS))
     theirs = MoorPyWire(WIRE).solve()
     names = (('depth', 'm'), ('lag', 'm'), ('tension', 'N'))

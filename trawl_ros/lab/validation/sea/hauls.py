@@ -1,4 +1,4 @@
-"""Published hauls at sea beside the model, point by point."""
+"""Published hauls at sea compared with the model, point by point."""
 
 import math
 from collections.abc import Sequence
@@ -48,7 +48,7 @@ MARKS = {
 def haul_figure(
     points: Sequence[tuple[str, str, float, float, str]], near_percent: float
 ) -> Figure:
-    """Model over sea, both logarithmic: lengths (m), areas (m²), angles (°); forces (kN) apart.
+    """Draw model over sea, both logarithmic; forces (kN) apart from m, m² and °.
 
     Parameters
     ----------
@@ -242,7 +242,7 @@ def run(small: bool) -> Findings:
 def _beside_reference(
     points: Sequence[tuple[ModelledHaul, PointRecord]], reference: ReferenceRecord
 ) -> list[MeasuredValue]:
-    """Largest errors of depth and of drag of the points that count, against those of others."""
+    """Rows on the largest errors of depth and drag, compared with those of others."""
     groups = (
         ('depth', 'depth', DEPTHS, reference.depth_percent),
         ('drag', 'drag and tension', FORCES, reference.drag_percent),
@@ -266,7 +266,7 @@ def _beside_reference(
 
 
 def _reference(published: PublishedHauls) -> str:
-    """Say whose accuracy is compared with."""
+    """Return a sentence on the source of these errors of others."""
     reference = published.reference
     return (
         f'Limits on the errors of depth and drag, {reference.depth_percent:g} and '
@@ -276,7 +276,7 @@ def _reference(published: PublishedHauls) -> str:
 
 
 def _worst(points: Sequence[tuple[ModelledHaul, PointRecord]]) -> str:
-    """Say which points are off most."""
+    """Return a sentence on the points with the largest errors."""
     ordered = sorted(points, key=lambda pair: -abs(pair[0].error(pair[1])))[:4]
     return 'Most off: ' + ', '.join(
         f'{one.gear.gear} {one.haul.name} {word(p.quantity)} {percent(one.error(p))}'

@@ -1,4 +1,4 @@
-"""Published hauls as records: sources, points and what may be tuned, from ``config/hauls``."""
+"""Published hauls as records: sources, points and tunable values, from ``config/hauls``."""
 
 from typing import Annotated, Literal
 
@@ -13,14 +13,14 @@ from trawl_ros.gear.records import GearRecord
 
 
 class ThinnerRecord(Record):
-    """Share of the net's twine area that is taken off its small meshes, by thinner twine."""
+    """Share of the net's twine area that is removed from its small meshes, by thinner twine."""
 
     mesh_up_to_mm: Annotated[float, Field(gt=0)]
     area_off: Annotated[float, Field(gt=0, lt=1)]
 
 
 def thinner(plan: NetPlanRecord, change: ThinnerRecord) -> NetPlanRecord:
-    """Plan with thinner twine in all pieces of meshes up to a size.
+    """Return the plan with thinner twine in all pieces with meshes up to a size.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def thinner(plan: NetPlanRecord, change: ThinnerRecord) -> NetPlanRecord:
 
 
 def _thinned(piece: PieceRecord, factor: float) -> PieceRecord:
-    """Piece with another diameter of twine; its mass per length goes with the square."""
+    """Return a piece with another twine diameter; its mass per length scales with the square."""
     changed = {}
     if piece.rtex is not None:
         changed['rtex'] = factor**2 * piece.rtex
@@ -65,13 +65,14 @@ Quantity = Literal[
     'lower_bridle_tension',
     'board_attack',
 ]
-"""Measured quantity, by its name among the `Observables` or `DERIVED`; m, m² for the area of the
-mouth, N for the tension of one warp or bridle and the drag of the net, and degrees for the attack
-angle of the boards.
+"""Name of a measured quantity among the `Observables` or `DERIVED`.
+
+Units are m, m² for the area of the mouth, N for the tension of one warp or bridle and the drag of
+the net, and degrees for the attack angle of the boards.
 """
 
 Use = Literal['counts', 'tunes', 'told']
-"""Use of a haul: it counts, one number of the gear was set by it, or it is shown only."""
+"""Use of a haul: it counts, it set one number of the gear, or it is only shown."""
 
 
 class HaulSource(Record):
@@ -82,7 +83,7 @@ class HaulSource(Record):
 
 
 class PointRecord(Record):
-    """Point: a quantity that was measured in a haul, with the ends of its range where printed."""
+    """Point: a measured quantity of a haul, with its range if one is printed."""
 
     quantity: Quantity
     value: Annotated[float, Field(gt=0)]
@@ -154,7 +155,7 @@ class HaulRecord(Record):
 
 
 class GearHauls(Record):
-    """Hauls of one gear, what was tuned by them, and what had to be assumed."""
+    """Hauls of one gear, with the tuned and the assumed values."""
 
     gear: str
     source: str
@@ -224,7 +225,7 @@ class TrendRecord(Record):
 
 
 class ReferenceRecord(Record):
-    """Accuracy that others reached at sea: largest errors of depth and of drag, %."""
+    """Accuracy reached by others at sea: largest errors of depth and of drag, %."""
 
     depth_percent: Annotated[float, Field(gt=0)]
     drag_percent: Annotated[float, Field(gt=0)]
@@ -232,7 +233,7 @@ class ReferenceRecord(Record):
 
 
 class UnusedSource(Record):
-    """Source that was looked at and not used, and the reason."""
+    """Source that was examined and not used, with the reason."""
 
     source: str
     why: str

@@ -1,4 +1,4 @@
-"""Quantities that sources print besides the observables: drag, area, tension, attack angle."""
+"""Quantities that sources print in addition to observables: drag, area, tension, attack angle."""
 
 import numpy as np
 

@@ -1,6 +1,6 @@
-"""Numbers that are assumed of the tank's net, each over its range, and what measured values need.
+"""Assumed numbers of the tank's net, each over its range, and the values that readings would need.
 
-The ranges were written down before any of them was run.
+The ranges were fixed before any run.
 """
 
 import math
@@ -24,7 +24,7 @@ NEAR, POWER = 0.1, 0.1
 
 
 COARSE = 0.5
-"""Fineness of the net with which doubts are solved, as a share of that of the file."""
+"""Refinement of the net for doubts, as a share of that of the file."""
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ DOUBTS = (
 
 @dataclass(frozen=True)
 class Doubted:
-    """Doubt with what the model has at both ends of it, by factor; none where nothing is found."""
+    """Doubt with the model's results at both ends, by factor; empty where nothing was found."""
 
     doubt: Doubt
     shown: dict[float, HeldNet | None]
@@ -170,7 +170,7 @@ def _values(net: HeldNet | None) -> tuple[str, str, str]:
 
 
 def doubts_table(every: Sequence[Doubted], states: Sequence[FlumeState]) -> TextTable:
-    """Every doubt with the values that it gives, and what the measured ones need."""
+    """Return a table of every doubt with its results, and the factors that the readings need."""
     by_trial = {state.trial: state for state in states}
     tank, slow = by_trial[SHOWN], by_trial[SLOW]
     power = math.log(tank.tension / slow.tension) / math.log(tank.speed / slow.speed)

@@ -25,7 +25,7 @@ GEAR = 'flume_83_112'
 TABLE = (
     Path(trawl_ros.__file__).parents[2] / 'shared/data/noaa_trawlmetrics/flume_tank_2025_2026.csv'
 )
-"""Table of the measured states, in a folder beside the checkout."""
+"""Table of the measured states, in a folder next to the checkout."""
 
 MEDIAN, EXPONENT = 10.0, 0.1
 """Largest median error (%) asked for, and largest difference of the exponent of tension."""
@@ -34,21 +34,21 @@ SERIES = ('67.0', '63.0', '65.0', '66.0')
 """Trials with standard bridles at 17.5 m of spread whose tensions give the exponent over speed."""
 
 QUANTITIES = {'spread': ('m', 1.0), 'height': ('m', 1.0), 'tension': ('kN', 1e-3)}
-"""Unit in a report, and its number in one of SI."""
+"""Display unit of each quantity, and its number in one SI unit."""
 
 NEIGHBOURS = 3
-"""States from which a net is led to one that is not found cold."""
+"""Number of known states to start from if a state is not found cold."""
 
 FRICTION = 0.5
-"""Friction of the tank's floor, as a share of what it carries, of which one row is made."""
+"""Friction of the tank's floor, as a share of the load on it, in one row."""
 
 BESIDES = {'lower_spread': 'between lower wing tips', 'wing_height': 'upper wing tips, height'}
-"""Columns of the table of which nothing counts, in m."""
+"""Columns of the table that do not count, in m."""
 
 
 @dataclass(frozen=True)
 class Compared:
-    """State with the net that the model has for it, or the reason why there is none."""
+    """State with the model's net for it, or the reason why there is none."""
 
     state: FlumeState
     net: HeldNet | None
@@ -71,7 +71,7 @@ class Compared:
 
 
 def compared(gear: GearRecord, states: Sequence[FlumeState]) -> list[Compared]:
-    """Find the net of each state: cold, and where that fails led from those most like it."""
+    """Find the net of each state: cold, or else from the most similar known states."""
     found = {}
     for number, state in enumerate(states):
         try:
@@ -86,7 +86,7 @@ def compared(gear: GearRecord, states: Sequence[FlumeState]) -> list[Compared]:
 
 
 def _led(gear: GearRecord, missing: Compared, known: Sequence[Compared]) -> Compared:
-    """State that was not found cold, led from one of the three most like it."""
+    """Find a state from one of the three most similar known states."""
     state, reasons = missing.state, [missing.refusal]
     alike = [
         one for one in known if (one.state.sweeps, one.state.short) == (state.sweeps, state.short)
@@ -168,7 +168,7 @@ def _series(every: Sequence[Compared]) -> list[Compared]:
 
 
 def further_table(every: Sequence[Compared]) -> TextTable:
-    """Figures that explain the checks, of which nothing is asked."""
+    """Return a table of values that explain the checks and have no target."""
     nets = [one.net for one in every if one.net is not None]
     shares = [one.net.lower_share for one in every if one.state.counts and one.net is not None]
     rubbed = exponent(

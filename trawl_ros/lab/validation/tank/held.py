@@ -15,7 +15,7 @@ from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 
 STUB = 0.5
-"""Length (m) of the rope without weight and drag between a mast and what follows."""
+"""Length (m) of the rope without weight and drag between a mast and the net's ropes."""
 
 PRECISE = 0.002
 """Height (m) over the floor at which the footrope lies on it."""
@@ -24,14 +24,16 @@ FIRST_SHARE, STEP_SHARE, MOST = 0.2, 0.02, 30
 """Shares of the footrope's weight that the search tries first; and how often it tries."""
 
 SCALE = 8
-"""The tank's net was this many times smaller: readings are multiples of 0.08 m, a centimetre in the
-tank. Speeds went with the root of it, so Reynolds numbers with its power of 3/2."""
+"""Scale of the tank's net: readings are multiples of 0.08 m, a centimetre in the tank.
+
+Speeds scale with its square root, so Reynolds numbers with its power of 3/2.
+"""
 
 TANK_VISCOSITY = 1.05e-6
 """Kinematic viscosity of the tank's water, taken as at 20 °C, m²/s."""
 
 STEPS = 4
-"""Steps in which a net is led from one state to another."""
+"""Number of steps from one state to another."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,7 @@ class HeldNet:
 
     @property
     def lower_share(self) -> float:
-        """Share of the lower bridles in the pull of all."""
+        """Share of the lower bridles in the tension of all bridles."""
         pulls = bar_tensions(self.model, self.found.state, self.found.tow)
         upper, lower = (
             float(np.mean(pulls[own]))
@@ -105,7 +107,7 @@ class HeldNet:
 
 
 def in_the_tank(model: GearModel) -> GearModel:
-    """Copy of a gear whose netting has the drag of the tank's small twine and slow water."""
+    """Return a gear whose netting has the drag of the tank's small twine and slow water."""
     factor = np.sqrt(TANK_VISCOSITY * SCALE**1.5 / VISCOSITY)
     bars = model.bars
     return replace(
@@ -167,7 +169,7 @@ def held(
 
 
 def led_to(gear: GearRecord, state: FlumeState, known: FlumeState, net: HeldNet) -> HeldNet:
-    """Lead the net of a known state to another one of the same rig, in equal steps.
+    """Move the net of a known state to another state of the same rig, in equal steps.
 
     Raises
     ------
@@ -195,7 +197,7 @@ def led_to(gear: GearRecord, state: FlumeState, known: FlumeState, net: HeldNet)
 
 
 def _rigged(gear: GearRecord, state: FlumeState, share: float) -> GearRecord:
-    """Gear as it stood for a state, with a share of the footrope's weight."""
+    """Return the gear as rigged for a state, with a share of the footrope's weight."""
     assert gear.pair is not None
     foot = gear.footrope.weight_in_water_n_m * share
     length = SWEEP if state.sweeps else TRUNCATED if state.short else BRIDLE
