@@ -182,9 +182,7 @@ def test_a_topic_whose_definition_is_not_understood_is_said(tmp_path, messages):
         schema = writer.register_schema('lab_msgs/msg/Thing', 'ros2msg', b'no such field')
         writer.add_message(writer.register_channel('/lab/thing', 'cdr', schema), 1, b'1234', 1)
         writer.finish()
-    with pytest.raises(
-        BagError, match=r'no table rows .*Thing in the bag cannot be understood'
-    ):
+    with pytest.raises(BagError, match=r'no table rows .*Thing in the bag cannot be understood'):
         export_bag(path, tmp_path / 'out')
 
 

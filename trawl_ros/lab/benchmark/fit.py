@@ -77,12 +77,12 @@ def trial(
     return windows
 
 
-AROUND = 24
+MESHES_AROUND = 24
 """Meshes around the net of the model: fewer than the default, to keep the rivals' runs short."""
 
 OVER_SEARCH, OVER_DIFFERENCES, FIT_S = 50.0, 10.0, 1.0
 
-PATIENCE = 1.04
+SEARCH_BUDGET_FACTOR = 1.04
 """Budget of the coordinate search as a multiple of the steady states it is expected to need."""
 
 OPTIONS = EstimatorOptions(iterations_per_window=1, relinearise=2.0)
@@ -112,7 +112,9 @@ class Fitted:
 
 def measure(small: bool) -> Findings:
     """Fit by sensitivities, by differences, and by coordinate search."""
-    gear = default_gear(small=True) if small else with_around(default_gear(small=False), AROUND)
+    gear = (
+        default_gear(small=True) if small else with_around(default_gear(small=False), MESHES_AROUND)
+    )
     model, prior = build_model(gear), board_prior(gear)
     lengths, speeds = (LENGTHS[2:3], SPEEDS[1:2]) if small else (LENGTHS, SPEEDS)
     windows = trial(plant_of(gear), lengths, speeds)
@@ -121,7 +123,7 @@ def measure(small: bool) -> Findings:
     of_ours = shares(lambda: _fitted(Counting(model), windows, prior, options), PARTS)
     theirs = _fitted(FiniteDifferencePredictor(model, prior.std), windows, prior, options)
     search = CoordinateSearch(model, windows, prior)
-    budget = round((0.02 if small else 1.0) * PATIENCE * OVER_SEARCH * ours.solves)
+    budget = round((0.02 if small else 1.0) * SEARCH_BUDGET_FACTOR * OVER_SEARCH * ours.solves)
     searched, seconds = timed(lambda: search.search(ours.objective, budget))
     found = (
         f'reached eq. 35 at {searched.objective:.4f} after {searched.solves} steady states'
@@ -183,8 +185,8 @@ def measure(small: bool) -> Findings:
         "one nearby. Gauss–Newton with differences is this package's estimator with derivatives "
         'by forward differences. The coordinate search goes round the coefficients as the '
         'founding paper describes it, on eq. 35 alone; it ends as soon as it is no worse than '
-        f'the estimator, or when it has solved {PATIENCE * OVER_SEARCH:.0f} times as many steady '
-        'states. Each ran once.',
+        f'the estimator, or when it has solved {SEARCH_BUDGET_FACTOR * OVER_SEARCH:.0f} times as '
+        'many steady states. Each ran once.',
     )
 
 

@@ -19,7 +19,7 @@ from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import StepFailed
 
-AROUND = (12, 24, 36, 48, 72, 84, 96, 108)
+MESHES_AROUND = (12, 24, 36, 48, 72, 84, 96, 108)
 """Meshes around, for less than 150 to more than 5000 net nodes; rows keep the mesh angle."""
 
 MOST_NODES = 5000.0
@@ -64,7 +64,7 @@ def measure(small: bool) -> Findings:
     """Measure one refinement after another."""
     gear = default_gear(small=False)
     sizes, refused = [], 'no finer one was tried'
-    for around in AROUND[:2] if small else AROUND:
+    for around in MESHES_AROUND[:2] if small else MESHES_AROUND:
         model = build_model(with_around(gear, around))
         try:
             sizes.append(_size(model, small=small))

@@ -38,7 +38,7 @@ from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import MEASURED
 from trawl_ros.solver.trimming.drawn_board import BoardDraw, draw_board
 
-AROUND = 24
+MESHES_AROUND = 24
 """Meshes around the mouth of the net."""
 
 SEEDS = (1, 2, 3, 4, 5, 6)
@@ -201,7 +201,7 @@ def measure(small: bool) -> Findings:
     """Run the trials."""
     record = default_gear(small=small)
     if not small:
-        record = with_around(record, AROUND)
+        record = with_around(record, MESHES_AROUND)
     gear, factor = TowedGear(build_model(record)), PRIOR_STD_FACTOR * (0.2 if small else 1.0)
     rows: list[MeasuredValue] = []
     seeds, duration = (SEEDS[:1], 80.0) if small else (SEEDS, DURATION_S)
@@ -224,8 +224,8 @@ def measure(small: bool) -> Findings:
     return Findings(
         tuple(rows),
         text=f'{DURATION_S:.0f} s of hauling, two speed steps and veering, in stretches of '
-        f'{STRETCH_S:.0f} s; the model, with {AROUND} meshes around its net, is its own plant and '
-        f'is towed in the same steps of {STEP_S:g} s. Boards are drawn from the '
+        f'{STRETCH_S:.0f} s; the model, with {MESHES_AROUND} meshes around its net, is its own '
+        f'plant and is towed in the same steps of {STEP_S:g} s. Boards are drawn from the '
         f"gear file's prior with {PRIOR_STD_FACTOR:g} of its std, and rigged for the course's "
         'states; the fit begins at the mean of that prior and knows the fastening points. With '
         '*white noise* inputs and sensors are else exact; with *all errors as stated* added mass, '

@@ -21,7 +21,7 @@ from trawl_ros.lab.running.processes import NodeFailed, Processes
 RATES_HZ = (500.0, 1000.0)
 """Total message rates; the first one has the target."""
 
-SECONDS = 60.0
+DURATION_S = 60.0
 SMALL_SECONDS = 1.0
 PATIENCE_S = 30.0
 RECORDER = 'bag_recorder'
@@ -100,7 +100,7 @@ def measure(small: bool) -> Findings:
     asked = MeasuredValue(what, math.nan, target=at_most(0.0))
     if (nothing := without_ros(asked)) is not None:
         return nothing
-    seconds = SMALL_SECONDS if small else SECONDS
+    seconds = SMALL_SECONDS if small else DURATION_S
     rows = []
     for rate in RATES_HZ[:1] if small else RATES_HZ:
         with tempfile.TemporaryDirectory() as name:

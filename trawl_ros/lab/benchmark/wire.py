@@ -25,7 +25,7 @@ SEGMENTS = 20
 
 OVER_MOORDYN = 1.5
 
-LIMIT = 0.01
+MAX_ERROR_SHARE = 0.01
 """Largest error of depth and tension at any time, against the program's own converged run."""
 
 OWN_CONVERGED = 0.1
@@ -34,10 +34,10 @@ OWN_STEPS = (4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.5)
 
 CONVERGED = ('RK4', 0.002)
 
-COUPLING = 0.2
+COUPLING_S = 0.2
 """Time (s) of uniform motion of the block in MoorDyn: exact, with few calls."""
 
-SETTLING = 200.0
+SETTLING_S = 200.0
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,8 @@ def measure(small: bool) -> Findings:
         text=f'{WIRE.length:g} m of wire with a lump, {SEGMENTS} segments, for '
         f'{manoeuvre.duration:g} s: hauling at 0.5 m/s, then a turn at 0.5°/s and '
         f'{WIRE.speed:g} m/s. Each program at the longest step at which depth and tension stay '
-        f'within {LIMIT:.0%} of its own converged run at any time; CPU time, median of repeats. '
+        f'within {MAX_ERROR_SHARE:.0%} of its own converged run at any time; CPU time, '
+        'median of repeats. '
         'MoorDyn may damp the wire as each of its schemes likes it best; the implicit method '
         'here has no use for that.',
     )
@@ -120,7 +121,7 @@ def fastest(run: Run, steps: Sequence[float], converged: History, *, small: bool
         except (PeerFailed, StepFailed):
             continue
         error = apart(first, converged).largest
-        if error < LIMIT:
+        if error < MAX_ERROR_SHARE:
             again = [run(step) for _ in range(0 if small else 4)]
             return Fastest(step, error, median(one.factor for one in (first, *again)))
     return None
@@ -161,15 +162,15 @@ def moordyn_history(wire: TowedWire, scheme: str, step: float, manoeuvre: WireMa
         If MoorDyn breaks down.
     """
     lump = (INTEGRATED.lag, INTEGRATED.depth)
-    with closing(MoorDynWire(wire, SEGMENTS, scheme, step, lump, coupling=COUPLING)) as system:
-        system.settle(SETTLING)
+    with closing(MoorDynWire(wire, SEGMENTS, scheme, step, lump, coupling=COUPLING_S)) as system:
+        system.settle(SETTLING_S)
         return system.follow(manoeuvre)
 
 
 def _own_row(ours: Fastest | None) -> MeasuredValue:
     what = 'one wire of 600 m in 20 segments, hauling and turning'
     if ours is None:
-        note = f'no step of those tried keeps the error below {LIMIT:.0%}'
+        note = f'no step of those tried keeps the error below {MAX_ERROR_SHARE:.0%}'
         return MeasuredValue(what, math.nan, '× real time', note=note)
     each = 1e3 * ours.step / ours.factor
     note = f'steps of {ours.step:g} s, error {ours.error:.2%}; {each:.2f} ms per step'

@@ -16,7 +16,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.absent import PeerFailed, peer
 
-DEEP = 3000.0
+WATER_DEPTH_M = 3000.0
 """Water depth (m) at which nothing touches the bottom."""
 
 
@@ -134,7 +134,7 @@ def input_file(
             f'{options.scheme} tScheme',
             f'{options.density!r} rho',
             f'{options.gravity!r} g',
-            f'{DEEP!r} WtrDpth',
+            f'{WATER_DEPTH_M!r} WtrDpth',
             '1 disableOutput',
             '1 disableOutTime',
             '--- END ---',
@@ -143,7 +143,7 @@ def input_file(
     )
 
 
-HEADER = 9
+STATE_HEADER_BYTES = 9
 """Bytes of a file of MoorDyn's state before its numbers: a name and a version."""
 
 
@@ -210,7 +210,7 @@ class MoorDyn:
         content = bytearray(file.read_bytes())
         # A header, the number of words and of things, then each thing, points first: rows,
         # columns, and a row of place and velocity.
-        words = np.frombuffer(content, '<f8', offset=HEADER)
+        words = np.frombuffer(content, '<f8', offset=STATE_HEADER_BYTES)
         rows = words[2 : 2 + 8 * len(places)].reshape(-1, 8)
         rows[:, 2:5], rows[:, 5:8] = places, velocities
         file.write_bytes(content)

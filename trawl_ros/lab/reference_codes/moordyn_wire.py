@@ -19,10 +19,10 @@ from trawl_ros.lab.reference_codes.towed_wire import TowedWire, WireSteadyState
 
 BLOCK, LUMP, WIRE_LINE = 0, 1, 0
 
-COUPLING = 0.1
+COUPLING_S = 0.1
 """Longest time (s) over which MoorDyn sees the block in uniform motion."""
 
-SETTLING = 2500.0
+SETTLING_S = 2500.0
 """Time (s) in which the wire reaches its steady state from a straight line."""
 
 
@@ -49,7 +49,7 @@ class MoorDynWire:
         step: float,
         lump: tuple[float, float],
         *,
-        coupling: float = COUPLING,
+        coupling: float = COUPLING_S,
     ) -> None:
         make = LineType(
             diameter=wire.diameter,
@@ -80,7 +80,7 @@ class MoorDynWire:
         self._coupling = step * max(1, int(coupling / step + 1e-9))
         self._system = MoorDyn(text, self._block, wire.speed * np.array([1.0, 0.0, 0.0]))
 
-    def settle(self, duration: float = SETTLING) -> WireSteadyState:
+    def settle(self, duration: float = SETTLING_S) -> WireSteadyState:
         """Tow straight ahead; return the final state."""
         velocity = self._wire.speed * np.array([1.0, 0.0, 0.0])
         force = np.zeros((1, 3))

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from trawl_ros.report.rendering import number
 
-STEPS = 4000
+SEARCH_STEPS = 4000
 """Number of steps of a range of factors in this search."""
 
 
@@ -33,11 +33,11 @@ def factors_needed(
     known = sorted((factor, value) for factor, value in values.items() if not math.isnan(value))
     good: list[list[float]] = []
     for (low, first), (high, second) in pairwise(known):
-        for step in range(STEPS + 1):
-            share = step / STEPS
+        for step in range(SEARCH_STEPS + 1):
+            share = step / SEARCH_STEPS
             factor = low + share * (high - low)
             inside = abs(first + share * (second - first) - measured) <= tolerance * measured
-            if inside and good and abs(good[-1][1] - factor) <= (high - low) / STEPS * 1.5:
+            if inside and good and abs(good[-1][1] - factor) <= (high - low) / SEARCH_STEPS * 1.5:
                 good[-1][1] = factor
             elif inside:
                 good.append([factor, factor])

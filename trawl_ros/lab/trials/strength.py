@@ -39,7 +39,7 @@ SIGMAS = float(norm.isf(0.5 * ALARM)) + POWER
 MAX_PROBES = 10
 """Largest number of probes near the wanted size."""
 
-CLOSE = 0.05
+SIZE_TOLERANCE = 0.05
 """Relative tolerance of a size."""
 
 
@@ -78,7 +78,7 @@ class Likelihood:
             if seen <= 0.0:
                 return np.inf
             wanted = size * SIGMAS / seen
-            close = abs(wanted / size - 1.0) < CLOSE
+            close = abs(wanted / size - 1.0) < SIZE_TOLERANCE
             if close or hidden.whole or (wanted > most and np.isinf(high)):
                 return float(wanted)
             if wanted > size:

@@ -18,7 +18,7 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_usable
 from trawl_ros.solver.operating_point import OperatingPoint
 
-SAME = 1e-3
+SAME_ROOT_M = 1e-3
 """Largest distance (m) between two roots that count as one."""
 
 Verdict = Literal['usable'] | Refusal
@@ -48,9 +48,9 @@ class Answer:
     """Result of all searches at a place.
 
     ``root`` is the usable root, or else the first one found, and ``refusal`` the reason why it may
-    not be used. ``usable_roots`` counts usable roots more than `SAME` apart. ``apart`` is the
-    largest distance (m) between two roots. ``agreed`` is true if all searches found a root, or none
-    did.
+    not be used. ``usable_roots`` counts usable roots more than `SAME_ROOT_M` apart. ``apart`` is
+    the largest distance (m) between two roots. ``agreed`` is true if all searches found a root, or
+    none did.
     """
 
     verdict: Verdict
@@ -137,7 +137,7 @@ def judged(place: Place, searches: list[Search]) -> Answer:
     for found in (tried.found for tried in searches if tried.found is not None):
         distances = [largest_distance(found, root) for root in roots]
         apart = max([apart, *distances])
-        if all(one > SAME for one in distances):
+        if all(one > SAME_ROOT_M for one in distances):
             roots.append(found)
     seconds = max(tried.seconds for tried in searches)
     refusals: list[NoSteadyState | None] = []

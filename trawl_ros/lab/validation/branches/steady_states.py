@@ -13,7 +13,7 @@ from trawl_ros.lab.report.measured import MeasuredValue, within
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.running.timing import factor_cost
 from trawl_ros.lab.validation.branches.branch_limits import MIDDLE, limit_findings
-from trawl_ros.lab.validation.branches.continuation import SAME, Verdict, largest_distance
+from trawl_ros.lab.validation.branches.continuation import SAME_ROOT_M, Verdict, largest_distance
 from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
 from trawl_ros.lab.validation.branches.lattices import (
     ANGLES,
@@ -102,7 +102,7 @@ def tally(
     for shape in shapes:
         try:
             found = find_equilibrium(model, point, near=shape)
-            if good is not None and largest_distance(found, good) <= SAME:
+            if good is not None and largest_distance(found, good) <= SAME_ROOT_M:
                 same += 1
             else:
                 require_usable(model, found)
@@ -121,7 +121,7 @@ FACTORISATIONS = 21
 SHORTEST = 200.0
 """Shortest towing warp, m; on shorter warps netting is slack."""
 
-BOWING = 317.0
+BOWING_PRESSURE_PA = 317.0
 """Load (Pa) under which twine bows: that of water on meshes towed at 2.1 m/s with bars at 20° to
 the flow."""
 
@@ -231,7 +231,7 @@ def _without_reason(speeds: Lattice) -> MeasuredValue:
 
 def _bowed(model: GearModel, size: SearchSize) -> MeasuredValue:
     """Check the usable places on the shortest warp, with twine that bows under the water's load."""
-    netting = model.gear.netting.model_copy(update={'bowing_pressure_pa': BOWING})
+    netting = model.gear.netting.model_copy(update={'bowing_pressure_pa': BOWING_PRESSURE_PA})
     bowed = build_model(model.gear.model_copy(update={'netting': netting}))
     length, refused = size.lengths[0], []
     speeds = [speed for speed in size.speeds if speed >= WORKING[0]]
@@ -242,7 +242,7 @@ def _bowed(model: GearModel, size: SearchSize) -> MeasuredValue:
             refused.append(str(refusal))
     return MeasuredValue(
         f'share of usable places at {length:g} m of warp from {WORKING[0]:g} m/s, with twine that '
-        f'bows under {BOWING:g} Pa',
+        f'bows under {BOWING_PRESSURE_PA:g} Pa',
         100.0 * (1.0 - len(refused) / len(speeds)),
         '%',
         within(0.0, of=100.0),
@@ -313,7 +313,8 @@ def _collapsed(model: GearModel, size: SearchSize) -> tuple[list[MeasuredValue],
             'searches from a collapsed shape that gave another state than the good branch',
             sum(each.other for each in tallies),
             target=within(0.0, of=0.0),
-            note=f'{total} searches; the good branch is the one found cold, within {SAME:g} m.',
+            note=f'{total} searches; the good branch is the one found cold, within '
+            f'{SAME_ROOT_M:g} m.',
             key='collapsed_starts',
         ),
         _overturned(model, goods[-1]),
@@ -369,7 +370,7 @@ def _counts(speeds: Lattice, angles: Sequence[Lattice]) -> TextTable:
 
 def _text(speeds: Lattice) -> str:
     doubtful = [a for a in speeds.answers.values() if a.verdict != 'usable' and a.root is not None]
-    several = sum(answer.apart > SAME or not answer.agreed for answer in doubtful)
+    several = sum(answer.apart > SAME_ROOT_M or not answer.agreed for answer in doubtful)
     surfaced = any(answer.verdict == 'surfaced' for answer in speeds.answers.values())
     wet = 'Fast on short warps the headrope comes out of the water. ' if surfaced else ''
     return (

@@ -27,7 +27,7 @@ WARP, SPEED = 500.0, 2.1
 RATE, RAMP = 0.4, 8.0
 """Speed of hauling (m/s), and how long (s) the winches take to come up to it and to stop."""
 
-BEGIN = 10.0
+STEADY_TOW_S = 10.0
 """Duration of the steady tow before, s."""
 
 STEPS = (0.4, 0.2, 0.1)
@@ -47,9 +47,9 @@ class WireHaul:
     def hauled(self, t: float) -> tuple[float, float]:
         """Length hauled (m) and its rate (m/s) at a time, with cosine ramps of the rate."""
         steady = self.wire / RATE - RAMP
-        up = min(max(t - BEGIN, 0.0), RAMP)
-        down = min(max(t - BEGIN - RAMP - steady, 0.0), RAMP)
-        on = min(max(t - BEGIN - RAMP, 0.0), steady)
+        up = min(max(t - STEADY_TOW_S, 0.0), RAMP)
+        down = min(max(t - STEADY_TOW_S - RAMP - steady, 0.0), RAMP)
+        on = min(max(t - STEADY_TOW_S - RAMP, 0.0), steady)
         wave = RAMP / np.pi
 
         def ramped(s: float) -> float:
@@ -286,7 +286,7 @@ def _drawn(budgets: dict[float, Budget], haul: WireHaul) -> Figure:
         below.plot(other.times, other.residual, label=f'steps of {h:g} s')
     below.set(ylabel='missing in the budget [J]', xlabel='time [s]')
     for axes in (above, middle, below):
-        axes.axvspan(BEGIN, BEGIN + haul.wire / RATE + RAMP, color='k', alpha=0.07)
+        axes.axvspan(STEADY_TOW_S, STEADY_TOW_S + haul.wire / RATE + RAMP, color='k', alpha=0.07)
         axes.grid(alpha=0.3)
         axes.legend(loc='center left', bbox_to_anchor=(1.0, 0.5))
     return figure

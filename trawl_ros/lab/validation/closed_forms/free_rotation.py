@@ -21,11 +21,11 @@ from trawl_ros.solver.stepper import Motion, Stepper
 
 VOID = Water(density=1e-12, gravity=0.0)
 
-SECONDS = 100.0
+DURATION_S = 100.0
 STEPS = (0.8, 0.4, 0.2)
 """Time steps (s); the last one is that of a simulation."""
 
-SHORT = 0.05
+SHORT_STEP_S = 0.05
 """A step (s) much shorter than a simulation's."""
 
 RATES = 0.2 * np.array([[1.0, 0.01, 0.02], [0.4, 0.5, 0.6]])
@@ -128,8 +128,8 @@ def spun(h: float, seconds: float) -> Spin:
 
 def run(small: bool) -> Findings:
     """Let the boards spin with decreasing steps."""
-    seconds = 0.5 * SECONDS if small else SECONDS
-    spins = {h: spun(h, seconds) for h in (STEPS if small else (*STEPS, SHORT))}
+    seconds = 0.5 * DURATION_S if small else DURATION_S
+    spins = {h: spun(h, seconds) for h in (STEPS if small else (*STEPS, SHORT_STEP_S))}
     momentum = {h: float(spin.momentum.max()) for h, spin in spins.items()}
     energy = {h: float(spin.energy.max()) for h, spin in spins.items()}
     usual = STEPS[-1]
@@ -174,7 +174,7 @@ def run(small: bool) -> Findings:
         ),
     ]
     if not small:
-        checks.append(_floor(momentum[SHORT]))
+        checks.append(_floor(momentum[SHORT_STEP_S]))
     rows = tuple((f'{h:g}', f'{momentum[h]:.2e}', f'{energy[h]:.2e}') for h in spins)
     return Findings(
         rows=tuple(checks),
@@ -200,7 +200,7 @@ def run(small: bool) -> Findings:
 
 def _floor(drift: float) -> MeasuredValue:
     return MeasuredValue(
-        f'largest drift of the angular momentum in {SECONDS:.0f} s, steps of {SHORT} s',
+        f'largest drift of the angular momentum in {DURATION_S:.0f} s, steps of {SHORT_STEP_S} s',
         drift,
         target=at_most(1e-3),
         note='With the error of the method out of the way, it is the equations that keep it.',

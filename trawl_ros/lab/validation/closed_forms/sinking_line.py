@@ -18,12 +18,12 @@ LENGTH, SEGMENTS = 200.0, 20
 SLOPES = (0.0, 30.0)
 """Angles (degrees) of the line below the horizontal; its start is the upper end."""
 
-SLACK = 1.0 - 2e-4
+SLACK_NODE_DISTANCE = 1.0 - 2e-4
 """Distance of the nodes over the segments' length, for a line that is slack everywhere."""
 
 TIME_STEP = 0.01
 
-SECONDS = 8.0
+DURATION_S = 8.0
 """Time (s) after which the slowest motion is within 1e-6 of its final speed."""
 
 
@@ -79,7 +79,7 @@ def sinking(slope: float, seconds: float) -> Sinking:
     )
     along = np.array([np.cos(slope), 0.0, -np.sin(slope)])
     across = np.array([-np.sin(slope), 0.0, -np.cos(slope)])
-    place = np.linspace(0.0, SLACK * LENGTH, SEGMENTS + 1)[:, None]
+    place = np.linspace(0.0, SLACK_NODE_DISTANCE * LENGTH, SEGMENTS + 1)[:, None]
     state = lying(np.array([0.0, 0.0, -50.0]) + place * along, np.zeros(3))
     tow = holding(LENGTH, np.zeros(3), np.zeros(3))
     inertia = model.pattern.matrix(mass(model, state, tow)).toarray()
@@ -101,7 +101,7 @@ def sinking(slope: float, seconds: float) -> Sinking:
 
 def run(small: bool) -> Findings:
     """Release a level line and a sloping one."""
-    found = {slope: sinking(np.radians(slope), SECONDS) for slope in SLOPES}
+    found = {slope: sinking(np.radians(slope), DURATION_S) for slope in SLOPES}
     level, sloping = (found[slope] for slope in SLOPES)
     across_level = terminal(0.0)[1]
     along, across = terminal(np.radians(SLOPES[1]))
@@ -191,7 +191,7 @@ def run(small: bool) -> Findings:
 def _drawn(found: dict[float, Sinking]) -> Figure:
     figure = Figure(figsize=(6.4, 4.2), layout='constrained')
     axes = figure.add_subplot()
-    fine = np.linspace(0.0, SECONDS, 400)
+    fine = np.linspace(0.0, DURATION_S, 400)
     for slope, line in found.items():
         exact = fall(np.radians(slope), fine)
         for part, name in enumerate(('along', 'across')):
@@ -202,7 +202,7 @@ def _drawn(found: dict[float, Sinking]) -> Figure:
                 line.times[::40], line.velocities[::40, part], 'o', ms=4, color=curve.get_color()
             )
     axes.plot([], [], 'ko', ms=4, label='model')
-    axes.set(xlabel='time [s]', ylabel='speed [m/s]', xlim=(0.0, SECONDS))
+    axes.set(xlabel='time [s]', ylabel='speed [m/s]', xlim=(0.0, DURATION_S))
     axes.grid(alpha=0.3)
     axes.legend()
     return figure

@@ -20,7 +20,7 @@ from trawl_ros.lab.validation.convergence.gears import (
     differences,
     row,
 )
-from trawl_ros.lab.validation.convergence.time_step import BOWING
+from trawl_ros.lab.validation.convergence.time_step import BOWING_PRESSURE_PA
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.report.pictures import Drawing
@@ -226,7 +226,7 @@ BOWED_TOLERANCE_PERCENT = 2.0
 
 ANGLES = 'port_attack', 'port_inclination', 'port_roll'
 SHOWN = 'door_spread', 'port_door_depth', 'vertical_opening', 'warp_tension', *ANGLES
-KINDS = {'straight': 0.0, 'bowed': BOWING}
+KINDS = {'straight': 0.0, 'bowed': BOWING_PRESSURE_PA}
 
 
 def bowed_nets(
@@ -301,7 +301,7 @@ def _table(seen: dict[str, dict[int, FloatArray]]) -> TextTable:
     head = ('twine', 'around', 'spread (m)', 'door depth (m)', 'opening (m)', 'tension (kN)')
     return TextTable(
         f'{BOWED_WARP_M:g} m of warp, {SPEED:g} m/s, over meshes around the net; bowed: '
-        f'under {BOWING:g} Pa',
+        f'under {BOWING_PRESSURE_PA:g} Pa',
         (*head, 'α (°)', 'δ (°)', 'roll (°)'),
         tuple(rows),
     )

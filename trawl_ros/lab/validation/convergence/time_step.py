@@ -24,7 +24,7 @@ from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import Stepper, at_rest
 
-SAMPLE = 0.8
+SAMPLE_S = 0.8
 """Time (s) between compared instants; a multiple of every step."""
 
 START = Command(port_length=500.0, starboard_length=500.0, speed=2.1)
@@ -32,7 +32,7 @@ START = Command(port_length=500.0, starboard_length=500.0, speed=2.1)
 HAULING = np.array([1.0, 0.8])
 """Share of the largest speed with which the port and starboard winch haul."""
 
-GAIN = 0.2
+SPEED_GAIN_M_S = 0.2
 """Increase of the ship's speed during the manoeuvre, m/s."""
 
 
@@ -66,8 +66,8 @@ def smooth_tow(model: GearModel, tow: Tow, t: float, duration: float) -> Tow:
     """
     wave = 2 * np.pi * t / duration
     hauled = 0.5 * model.gear.winch.max_speed_m_s * HAULING
-    way = 0.5 * GAIN * (t - duration / np.pi * np.sin(0.5 * wave))
-    faster = 0.5 * GAIN * (1.0 - np.cos(0.5 * wave))
+    way = 0.5 * SPEED_GAIN_M_S * (t - duration / np.pi * np.sin(0.5 * wave))
+    faster = 0.5 * SPEED_GAIN_M_S * (1.0 - np.cos(0.5 * wave))
     ahead = np.array([1.0, 0.0, 0.0])
     return replace(
         tow,
@@ -83,7 +83,7 @@ def smooth_haul(
 ) -> SteppedManoeuvre:
     """Run the stepper through the smooth manoeuvre, from a steady state."""
     stepper, motion = Stepper(model), at_rest(start.state)
-    each = round(SAMPLE / step)
+    each = round(SAMPLE_S / step)
     seen, places, tension = [], [], np.inf
     for k in range(1, round(duration / step) + 1):
         tow = smooth_tow(model, start.tow, k * step, duration)
@@ -104,9 +104,9 @@ def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) ->
     simulation.command = Command(
         START.port_length - hauled * HAULING[0],
         START.starboard_length - hauled * HAULING[1],
-        START.speed + 0.5 * GAIN,
+        START.speed + 0.5 * SPEED_GAIN_M_S,
     )
-    each = round(2 * SAMPLE / step)
+    each = round(2 * SAMPLE_S / step)
     seen, places, tension = [], [], np.inf
     for k in range(1, round(2 * duration / step) + 1):
         now = simulation.advance()
@@ -122,20 +122,20 @@ def _places(state: State) -> FloatArray:
     return np.concatenate([state.nodes, state.board_positions])
 
 
-ORDER = 1.9
+MIN_SECOND_ORDER = 1.9
 """Smallest order that counts as second order: halving the step leaves 27 % of the error."""
 
 DEFAULT_STEP = 0.2
 """Step (s) of a tow at the simulation's default period."""
 
 
-SLACK = 10.0
+SLACK_TENSION_N = 10.0
 """Tension (N) below which a bar of netting counts as slack."""
 
-TAUT = 1.0
+TAUT_TENSION_N = 1.0
 """Lowest tension (N) of a net that counts as taut throughout."""
 
-BOWING = 317.0
+BOWING_PRESSURE_PA = 317.0
 """Load (Pa) under which twine bows in the gear of which nothing goes slack: that of water on meshes
 towed at 2.1 m/s with bars at 20° to the flow."""
 
@@ -207,7 +207,7 @@ def run(small: bool) -> Findings:
     if small:
         coarse = gear.netting.model_copy(update={'around': 12})
         gear = gear.model_copy(update={'netting': coarse})
-    bowed = gear.netting.model_copy(update={'bowing_pressure_pa': BOWING})
+    bowed = gear.netting.model_copy(update={'bowing_pressure_pa': BOWING_PRESSURE_PA})
     taut = _smooth(build_model(gear.model_copy(update={'netting': bowed})), size)
     model = build_model(gear)
     smooth = _smooth(model, size)
@@ -222,7 +222,7 @@ def run(small: bool) -> Findings:
             MeasuredValue(
                 'order in the root mean square of all observables, smooth inputs',
                 smooth.order(smooth.norm),
-                target=at_least(ORDER),
+                target=at_least(MIN_SECOND_ORDER),
                 note=f'With bowed twine, of which nothing goes slack, it is '
                 f'{taut.order(taut.norm):.2f}. Here bars of netting go slack and taut, and their '
                 'force bends within a short extension.',
@@ -231,13 +231,13 @@ def run(small: bool) -> Findings:
             MeasuredValue(
                 'order in the median place of all nodes and boards, smooth inputs',
                 smooth.order(np.median(smooth.places, 1)),
-                target=at_least(ORDER),
+                target=at_least(MIN_SECOND_ORDER),
                 key='smooth_median_place',
             ),
             MeasuredValue(
                 'order in the root mean square of all observables, winch ramp',
                 ramp.order(ramp.norm),
-                target=at_least(ORDER),
+                target=at_least(MIN_SECOND_ORDER),
                 note='Ship and winches accelerate abruptly: the second derivative of what they '
                 'impose jumps, and a single observable need not show the order.',
                 key='ramp_norm',
@@ -267,9 +267,10 @@ def run(small: bool) -> Findings:
             f'at several steps and held against one of {size.smooth_steps[-1]:g} s. The order of '
             'a method shows only where its inputs have as many derivatives, so the winches haul '
             'with one wave of a cosine, up to their largest speed. It is towed by a gear of which '
-            f'nothing goes slack, since its twine bows under {BOWING:g} Pa and so pulls however '
-            'close its ends come, and by the default gear, some of whose netting hangs slack. The '
-            "second manoeuvre is the simulation's own: acceleration sets in and ends abruptly. "
+            f'nothing goes slack, since its twine bows under {BOWING_PRESSURE_PA:g} Pa and so '
+            'pulls however close its ends come, and by the default gear, some of whose netting '
+            "hangs slack. The second manoeuvre is the simulation's own: acceleration sets in and "
+            'ends abruptly. '
             'With the default gear the lowest order among all observables is '
             f'{smooth.orders().min():.2f}, and that of the largest error of all places '
             f'{smooth.order(smooth.places.max(1)):.2f}. {_flapping(model, smooth)}'
@@ -291,7 +292,7 @@ def _taut_rows(taut: Convergence) -> Iterator[MeasuredValue]:
         'lowest tension of any bar at any time, smooth inputs, bowed twine',
         taut.tension,
         'N',
-        at_least(TAUT),
+        at_least(TAUT_TENSION_N),
         'Nothing goes slack.',
         key='taut_tension',
     )
@@ -299,7 +300,7 @@ def _taut_rows(taut: Convergence) -> Iterator[MeasuredValue]:
     yield MeasuredValue(
         'lowest order among all observables, smooth inputs, nothing slack',
         float(orders.min()),
-        target=at_least(ORDER),
+        target=at_least(MIN_SECOND_ORDER),
         note=f'It is that of {OBSERVABLES[int(orders.argmin())]}. The method, generalised-α, is of '
         'second order.',
         key='taut_every_observable',
@@ -307,7 +308,7 @@ def _taut_rows(taut: Convergence) -> Iterator[MeasuredValue]:
     yield MeasuredValue(
         'lowest order among the places of all nodes and boards, smooth inputs, nothing slack',
         float(taut.place_orders().min()),
-        target=at_least(ORDER),
+        target=at_least(MIN_SECOND_ORDER),
         note=f'Each of {taut.places.shape[1]} on its own.',
         key='taut_every_place',
     )
@@ -327,9 +328,9 @@ def _flapping(model: GearModel, found: Convergence) -> str:
     share = float(np.median(found.places[-1]) / found.places[-1, worst])
     return (
         f'The largest error at {found.steps[-1]:g} s is that of {part}, of whose {len(held)} bars '
-        f'{int((held < SLACK).sum())} pull with less than {SLACK:.0f} N; the median of all points '
-        f'errs by {share:.2g} times as much. Slack netting flaps, and bars that jerk taut have no '
-        'smooth motion for a higher order to show on.'
+        f'{int((held < SLACK_TENSION_N).sum())} pull with less than {SLACK_TENSION_N:.0f} N; the '
+        f'median of all points errs by {share:.2g} times as much. Slack netting flaps, and bars '
+        'that jerk taut have no smooth motion for a higher order to show on.'
     )
 
 

@@ -9,7 +9,7 @@ from trawl_ros.lab.validation.paper.comparison import Comparison, column
 ERRORS = {'door_spread': 4.8, 'door_depth': 4.5, 'net_depth': 7.4, 'warp_tension': 2.6}
 """Errors of the 6-DOF model that the paper reports, %."""
 
-CLOSE = 5.0
+CLOSE_ERROR_PERCENT = 5.0
 """Largest error that counts as close, %: the paper's own error against its trial."""
 
 DEPTHS = ('door_depth', 'net_depth')
@@ -74,7 +74,7 @@ def _close(seen: Comparison) -> Claim:
                 f'mean difference of the {_words(channel)}, 3-DOF to 6-DOF',
                 apart(channel),
                 '%',
-                at_most(CLOSE),
+                at_most(CLOSE_ERROR_PERCENT),
                 'the point keeps its lift level at every warp length, while a board that leans '
                 'gives part of it up.',
                 key=f'close_{channel}',
@@ -204,7 +204,7 @@ def _gap(seen: Comparison) -> list[Claim]:
                 'mean error of the four quantities, 6-DOF boards',
                 float(np.mean([seen.error(seen.trial_six, channel) for channel in ERRORS])),
                 '%',
-                at_most(CLOSE),
+                at_most(CLOSE_ERROR_PERCENT),
                 f'most of it is in the {_words(worst)}: {seen.error(seen.trial_six, worst):.1f} %.',
                 key='six_in_all',
             ),

@@ -38,10 +38,10 @@ TURN = 5.0
 TURNS = (-TURN, -TURN / 2, 0.0, TURN / 2, TURN)
 FEW_TURNS = (-TURN, 0.0, TURN)
 
-FASTER = 1.05
+SPEED_FACTOR = 1.05
 """Factor on the speed that shows the effect of drag alone on the mouth."""
 
-COARSER = 2
+COARSENING_FACTOR = 2
 """Factor by which the net of the small version is coarser."""
 
 
@@ -80,7 +80,9 @@ def gear(small: bool) -> GearRecord:
     record = load_gear('kaifuha')
     if not small:
         return record
-    netting = record.netting.model_copy(update={'around': record.netting.around // COARSER})
+    netting = record.netting.model_copy(
+        update={'around': record.netting.around // COARSENING_FACTOR}
+    )
     return record.model_copy(update={'netting': netting})
 
 
@@ -142,4 +144,4 @@ def installation_sweep(
 
 def faster(model: GearModel) -> Sighting:
     """Return the gear without rotations at a somewhat higher speed."""
-    return sighting(model, steady_state(model, WARP_LENGTH, FASTER * SPEED))
+    return sighting(model, steady_state(model, WARP_LENGTH, SPEED_FACTOR * SPEED))

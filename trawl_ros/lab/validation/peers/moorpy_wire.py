@@ -9,7 +9,7 @@ from trawl_ros.lab.validation.cases import ValidationCase
 
 SEGMENTS = 20
 
-SHARE = 0.01
+MAX_DIFFERENCE = 0.01
 """Largest allowed difference, as a share."""
 
 
@@ -39,7 +39,7 @@ def run(small: bool) -> Findings:
                 f'steady {name}',
                 getattr(ours, name),
                 unit,
-                within_share(SHARE, of=getattr(theirs, name)),
+                within_share(MAX_DIFFERENCE, of=getattr(theirs, name)),
                 "Expected is MoorPy's.",
                 key=f'steady_{name}',
             )

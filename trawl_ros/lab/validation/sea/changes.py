@@ -22,7 +22,7 @@ NET_DRAG = 2.0
 Reid's and MacLennan's formulas give 1.4 to 2.1 times that of the krill nets as built, at 2 knots.
 """
 
-FASTER = 2.9 / 2.7
+SPEED_FACTOR = 2.9 / 2.7
 """Factor on speed: upper end over middle of the range printed for one haul."""
 
 
@@ -67,8 +67,8 @@ CHANGES = (
     Change('no shielding', _unshielded),
     Change(f'warps that strum, C_N {STRUMMING:g}', _strumming),
     Change(f'net drag × {NET_DRAG:g}', _net_drag),
-    Change(f'{100 * (FASTER - 1):.0f} % faster', speed=FASTER),
-    Change('the last three', lambda gear: _strumming(_net_drag(gear)), FASTER),
+    Change(f'{100 * (SPEED_FACTOR - 1):.0f} % faster', speed=SPEED_FACTOR),
+    Change('the last three', lambda gear: _strumming(_net_drag(gear)), SPEED_FACTOR),
     Change("no growth of twine's drag at low Reynolds numbers", _netting('viscous')),
     Change('no lift of sheets', _netting('lift')),
     Change('no floats', _no_floats),

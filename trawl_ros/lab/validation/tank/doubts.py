@@ -19,7 +19,7 @@ SHOWN, SLOW = '64.0', '67.0'
 """Trials that are solved for each doubt: that by which twine was tuned, and the slowest of its
 series, whose tensions together give an exponent."""
 
-NEAR, POWER = 0.1, 0.1
+POINT_TOLERANCE_SHARE, EXPONENT_TOLERANCE = 0.1, 0.1
 """Share of a measured value within which a point is asked to be, and difference of exponents."""
 
 
@@ -187,8 +187,8 @@ def doubts_table(every: Sequence[Doubted], states: Sequence[FlumeState]) -> Text
             ('', '')
             if not one.doubt.small
             else (
-                need_in_words(heights, tank.height, NEAR),
-                need_in_words(powers, power, POWER / power),
+                need_in_words(heights, tank.height, POINT_TOLERANCE_SHARE),
+                need_in_words(powers, power, EXPONENT_TOLERANCE / power),
             )
         )
         if one is every[0]:
@@ -210,7 +210,7 @@ def doubts_table(every: Sequence[Doubted], states: Sequence[FlumeState]) -> Text
         'Assumed numbers, each changed alone, with a net cut half as finely: '
         f'trial {SHOWN}, and the exponent of tension from trial {SLOW} to it. The last columns '
         'have the factors on the number, of those tried, with which the height comes within '
-        f'{100 * NEAR:g} % of the tank and the exponent within 0.1.',
+        f'{100 * POINT_TOLERANCE_SHARE:g} % of the tank and the exponent within 0.1.',
         (
             'number', 'factor', 'spread (m)', 'height (m)', 'tension (kN)', 'exponent',
             'height needs', 'exponent needs',

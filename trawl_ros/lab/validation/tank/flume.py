@@ -16,7 +16,7 @@ from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, with
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.tank.doubts import doubted, doubts_table
-from trawl_ros.lab.validation.tank.held import SCALE, HeldNet, held, led_to
+from trawl_ros.lab.validation.tank.held import MODEL_SCALE, HeldNet, held, led_to
 from trawl_ros.lab.validation.tank.states import TRAWL, TUNED, FlumeState, read_states
 from trawl_ros.report.pictures import Drawing
 
@@ -39,7 +39,7 @@ QUANTITIES = {'spread': ('m', 1.0), 'height': ('m', 1.0), 'tension': ('kN', 1e-3
 NEIGHBOURS = 3
 """Number of known states to start from if a state is not found cold."""
 
-FRICTION = 0.5
+FLOOR_FRICTION = 0.5
 """Friction of the tank's floor, as a share of the load on it, in one row."""
 
 BESIDES = {'lower_spread': 'between lower wing tips', 'wing_height': 'upper wing tips, height'}
@@ -173,7 +173,10 @@ def further_table(every: Sequence[Compared]) -> TextTable:
     shares = [one.net.lower_share for one in every if one.state.counts and one.net is not None]
     rubbed = exponent(
         [
-            (one.state.speed, one.modelled('tension') + FRICTION * (one.net.floor + one.net.laid))
+            (
+                one.state.speed,
+                one.modelled('tension') + FLOOR_FRICTION * (one.net.floor + one.net.laid),
+            )
             for one in _series(every)
             if one.net is not None
         ]
@@ -185,7 +188,7 @@ def further_table(every: Sequence[Compared]) -> TextTable:
         ('what', 'value', 'note'),
         (
             (
-                f'exponent with friction of the floor, {FRICTION:g} of what it carries',
+                f'exponent with friction of the floor, {FLOOR_FRICTION:g} of what it carries',
                 f'{rubbed:.3f}',
                 'Not in the model.',
             ),
@@ -215,8 +218,8 @@ METHOD = (
     'lower bridles, and so much of the footrope that its middle lies on it, without friction. What '
     'counts was chosen before anything was solved with the gear as it ships: states with standard '
     'bridles, normal legs and an empty codend. '
-    f'The tank has a net 1:{SCALE} in slow water, where thin twine has more drag, and the more the '
-    'slower it is (Choo and Casarella 1971). So has the model, but for knots and ropes.'
+    f'The tank has a net 1:{MODEL_SCALE} in slow water, where thin twine has more drag, and the '
+    'more the slower it is (Choo and Casarella 1971). So has the model, but for knots and ropes.'
 )
 
 

@@ -14,16 +14,16 @@ from trawl_ros.model.net.wake import VISCOSITY
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 
-STUB = 0.5
+STUB_LENGTH_M = 0.5
 """Length (m) of the rope without weight and drag between a mast and the net's ropes."""
 
-PRECISE = 0.002
+HEIGHT_TOLERANCE_M = 0.002
 """Height (m) over the floor at which the footrope lies on it."""
 
 FIRST_SHARE, STEP_SHARE, MOST = 0.2, 0.02, 30
 """Shares of the footrope's weight that the search tries first; and how often it tries."""
 
-SCALE = 8
+MODEL_SCALE = 8
 """Scale of the tank's net: readings are multiples of 0.08 m, a centimetre in the tank.
 
 Speeds scale with its square root, so Reynolds numbers with its power of 3/2.
@@ -32,7 +32,7 @@ Speeds scale with its square root, so Reynolds numbers with its power of 3/2.
 TANK_VISCOSITY = 1.05e-6
 """Kinematic viscosity of the tank's water, taken as at 20 °C, m²/s."""
 
-STEPS = 4
+LEADING_STEPS = 4
 """Number of steps from one state to another."""
 
 
@@ -108,7 +108,7 @@ class HeldNet:
 
 def in_the_tank(model: GearModel) -> GearModel:
     """Return a gear whose netting has the drag of the tank's small twine and slow water."""
-    factor = np.sqrt(TANK_VISCOSITY * SCALE**1.5 / VISCOSITY)
+    factor = np.sqrt(TANK_VISCOSITY * MODEL_SCALE**1.5 / VISCOSITY)
     bars = model.bars
     return replace(
         model,
@@ -141,7 +141,7 @@ def held(
         If the net comes to rest nowhere on the way.
     """
     whole = gear.footrope.weight_in_water_n_m * (gear.footrope.length_m or 0.0)
-    length = SWEEP if state.sweeps else STUB
+    length = SWEEP if state.sweeps else STUB_LENGTH_M
     point = OperatingPoint(length, length, state.speed)
 
     def below(share: float, start: Equilibrium | None) -> tuple[float, GearModel, Equilibrium]:
@@ -155,7 +155,7 @@ def held(
     deep, model, found = below(share, None if near is None else near.found)
     slope = None
     for _ in range(MOST):
-        if abs(deep) <= PRECISE:
+        if abs(deep) <= HEIGHT_TOLERANCE_M:
             return HeldNet(model, found, state.elevation, (1.0 - share) * whole)
         step = STEP_SHARE if slope is None else -deep / slope
         step = max(-0.2, min(0.2, step))
@@ -177,8 +177,8 @@ def led_to(gear: GearRecord, state: FlumeState, known: FlumeState, net: HeldNet)
         If it comes to rest no more on the way: with the trial it was led from, and how far it came.
     """
     reached = 0
-    for step in range(1, STEPS + 1):
-        share = step / STEPS
+    for step in range(1, LEADING_STEPS + 1):
+        share = step / LEADING_STEPS
         between = replace(
             state,
             **{
@@ -190,7 +190,8 @@ def led_to(gear: GearRecord, state: FlumeState, known: FlumeState, net: HeldNet)
             net = held(gear, between, near=net)
         except NoSteadyState as reason:
             raise NoSteadyState(
-                f'led from trial {known.trial} the net came {reached} of {STEPS} steps: {reason}'
+                f'led from trial {known.trial} the net came {reached} of {LEADING_STEPS} steps: '
+                f'{reason}'
             ) from None
         reached = step
     return net
