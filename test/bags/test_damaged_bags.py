@@ -165,7 +165,7 @@ def test_a_damaged_chunk_is_stepped_over_and_said(bag_path, mcap_path, messages,
     found, problems = raw(bag_path)
     assert found == messages[:240] + messages[360:]
     assert 'damaged' in problems[0]
-    assert 'stepped over' in problems[0]
+    assert 'skipped' in problems[0]
     assert '480 of 600 messages' in problems[1]
 
 

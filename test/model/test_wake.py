@@ -5,7 +5,7 @@ import pytest
 
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.netting import NettingRecord, SectionRecord
-from trawl_ros.lab.validation.panels.panel import panel_loads
+from trawl_ros.lab.validation.panels.netting import panel_loads
 from trawl_ros.lab.validation.panels.published import netting_of
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.net.wake import VISCOSITY, exposure, exposure_of, sheet, slowed, viscous

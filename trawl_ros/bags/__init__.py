@@ -1,1 +1,1 @@
-"""Bags of messages: written, read, checked, repaired and exported."""
+"""Writing, reading, checking, repair and export of bags of messages."""

@@ -1,7 +1,7 @@
-"""Check of a bag: its content against its own metadata, and against the topic contract.
+"""Check of a bag: its content against its own metadata and against the topic table.
 
-A finding is something that whoever uses the bag has to know of; a note only says what the bag
-is. A bag without findings is sound.
+A finding is something that every user of the bag must know; a note only describes the bag. A bag
+without findings is sound.
 """
 
 from array import array
@@ -38,27 +38,34 @@ GROUPS = {
     'estimates': ESTIMATES,
     'commands': COMMANDS,
 }
-"""The contract's topics by what they are for."""
+"""Topics of the topic table by purpose."""
 
 RATE_FACTOR = 12.0
-"""A mean rate is a finding when it is this many times the usual one, or less than one such part:
-winches may come from 1 to 10 Hz, other instruments from 0.2 to 1 Hz, each with some jitter."""
+"""Factor between a mean rate and the usual one, up or down, that is a finding.
+
+Winches may report at 1 to 10 Hz and other instruments at 0.2 to 1 Hz, each with some jitter.
+"""
 
 GAP_FACTOR = 10.0
-"""A pause is a finding when it is this many times the topic's median interval, and longer than
-instruments of its kind are silent at sea."""
+"""A pause is a finding if it is this many times the topic's median interval.
+
+It must also be longer than instruments of its kind are silent at sea.
+"""
 
 LAG_BOUND_S = 5.0
-"""A difference between log time and header stamp that is a finding: acoustic links take up to a
-few seconds, a clock that is off takes more. A sweep of the sonar may take its time on top."""
+"""Difference between log time and header stamp that is a finding.
+
+Acoustic links need up to a few seconds; a wrong clock is off by more. A sweep of the sonar may take
+its duration in addition.
+"""
 
 
 @dataclass(frozen=True)
 class TopicCheck:
     """Check of one topic of a bag.
 
-    ``group`` is '' for a topic of somebody else. Rates are in Hz, log times in ns; ``lag_s`` is
-    the least and greatest log time after the header's stamp. What cannot be told is None.
+    ``group`` is '' for a topic of another project. Rates are in Hz, log times in ns. ``lag_s``
+    holds the smallest and largest log time after the header's stamp. Unknown values are None.
     """
 
     topic: str
@@ -92,7 +99,7 @@ class BagCheck:
 
     @property
     def sound(self) -> bool:
-        """True without any finding."""
+        """True if there are no findings."""
         return not self.findings
 
 
@@ -178,7 +185,7 @@ def check_bag(
 
 @dataclass
 class _Record:
-    """Record of one topic's times, in order of arrival."""
+    """Times of one topic, in order of arrival."""
 
     stamp_in: StampReader | None
     times: 'array[int]' = field(default_factory=lambda: array('q'))
@@ -216,7 +223,7 @@ class _Record:
 
 
 def _judge_times(records: Collection[_Record]) -> tuple[tuple[int, int] | None, list[Finding]]:
-    """Judge header stamps and log times of all topics; log times that cannot be are dropped."""
+    """Check header stamps and log times of all topics, and drop impossible log times."""
     of_headers, judged = (
         judge_stamps(np.concatenate([np.zeros(0, dtype=np.int64), *numbers]))
         for numbers in ([r.stamps for r in records], [r.times for r in records])
@@ -231,7 +238,7 @@ def _judge_times(records: Collection[_Record]) -> tuple[tuple[int, int] | None, 
 
 
 def _log_span(records: Collection[_Record]) -> tuple[int, int] | None:
-    """First and last log time (ns) of all; None without messages."""
+    """First and last log time (ns) of all topics; None without messages."""
     ends = [
         time
         for record in records
@@ -284,12 +291,11 @@ def _topic_check(
 def _whole(bag: Bag, topics: list[TopicCheck]) -> list[Finding]:
     findings = [Finding('content', '', problem) for problem in bag.problems]
     findings += [
-        Finding('index', '', f'{path.name} has no index that can be used; `trawl bag repair` '
-                'makes one')
+        Finding('index', '', f'{path.name} has no usable index; run `trawl bag repair`')
         for path in bag.files_without_index
     ]  # fmt: skip
     if bag.damaged_chunks:
-        text = f'{bag.damaged_chunks} chunks fail their checksum or make no sense'
+        text = f'{bag.damaged_chunks} chunks fail their checksum or cannot be decoded'
         findings.append(Finding('crc', '', text))
     if not any(checked.count for checked in topics):
         findings.append(Finding('content', '', f'{bag.path}: holds no message'))
@@ -309,7 +315,7 @@ def _against_contract(
     if any(profile.reliability is QosReliability.BEST_EFFORT for profile in offered):
         add('qos', 'was offered best effort, so messages may be missing; expected reliable')
     if known.latched and any(p.durability is QosDurability.VOLATILE for p in offered):
-        add('qos', 'was offered volatile, so who came late got none; expected transient local')
+        add('qos', 'was offered volatile, so late subscribers got none; expected transient local')
     if checked.group not in ('truth', 'instruments'):
         return findings
     if (
@@ -326,7 +332,7 @@ def _against_contract(
             + f', longest {max(gaps) / SECOND:.4g} s',
         )
     if checked.backward:
-        add('order', f'has {checked.backward} stamps before the one before; expected none')
+        add('order', f'has {checked.backward} stamps earlier than the one before; expected none')
     if checked.duplicates:
         add('order', f'has {checked.duplicates} stamps equal to the one before; expected none')
     # A sweep, which comes at no rate of its own, is stamped at its first ping.

@@ -25,10 +25,10 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.records.topics import NAMESPACE, absolute, find_topic
 
 ARRAY_LIMIT = 128
-"""Elements up to which an array is spread over columns, unless another number is asked for."""
+"""Default for the largest array that is spread over columns, elements."""
 
 DICTIONARY = 'columns.csv'
-"""The file that says what the columns of the others are."""
+"""File that describes the columns of the other files."""
 
 LOG_COLUMNS = ('log_time_s', 'log_time_ns')
 
@@ -111,7 +111,7 @@ def export_bag(
             for field, reason in table.layout.left_out.items()
         ]
         known = '; '.join([*bag.problems, *reasons]) or 'no message'
-        raise BagError(f'{bag.path}: gives no row of a table ({known})')
+        raise BagError(f'{bag.path}: gives no table rows ({known})')
     with written_folder(folder, BagError) as draft:
         draft.mkdir()
         tables = _write(bag, draft, layouts, on_progress)
@@ -155,7 +155,7 @@ def _wanted(bag: Bag, names: Collection[str], namespace: str) -> list[str]:
 
 
 def _layouts(bag: Bag, wanted: list[str], array_limit: int) -> dict[str, _Table]:
-    """Return the columns of each topic: of those that vary, by reading all of their messages."""
+    """Return the columns of each topic; for types of varying size all messages are read."""
     layouts: dict[str, FlatLayout] = {}
     known: dict[str, tuple[bool, frozenset[str]]] = {}
     for topic in wanted:
@@ -183,7 +183,7 @@ def _layouts(bag: Bag, wanted: list[str], array_limit: int) -> dict[str, _Table]
 
 
 def _file_names(topics: Collection[str]) -> dict[str, str]:
-    """Name the files after the topics, safe as paths and unique."""
+    """Return file names for the topics: safe as paths, and unique."""
     names: dict[str, str] = {}
     for topic in sorted(topics):
         base = re.sub(r'[^A-Za-z0-9_]+', '.', topic).strip('.') or 'topic'
@@ -253,7 +253,7 @@ class CsvOutput:
         self._writer = csv.writer(self, lineterminator='\r\n')
 
     def row(self, cells: Iterable[str]) -> None:
-        """Write one row; no spreadsheet takes its text for a formula."""
+        """Write one row; text that a spreadsheet would read as a formula is made harmless."""
         self._writer.writerow([_harmless(cell) for cell in cells])
 
     def write(self, line: str) -> None:

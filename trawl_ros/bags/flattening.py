@@ -1,6 +1,6 @@
-"""Messages as rows: a column per number or text, named by the path of its field, with its unit.
+"""Messages as rows: one column per number or text, named by the path of its field, with its unit.
 
-A time gives two columns, ``_s`` for reading and plotting and ``_ns`` for exactness; the elements
+A time gives two columns, ``_s`` for reading and plotting and ``_ns`` for the exact value. Elements
 of an array are counted from 0 in brackets: ``position[1]``.
 """
 
@@ -16,7 +16,7 @@ from rosbags.typesys.store import Typestore
 from trawl_ros.core.time import SECOND
 
 MAX_COLUMNS = 1000
-"""Columns that one field of a message may spread over."""
+"""Largest number of columns of one field."""
 
 _TIMES = ('builtin_interfaces/msg/Time', 'builtin_interfaces/msg/Duration')
 
@@ -31,7 +31,7 @@ _BY_TOPIC: Mapping[str, Mapping[str, str]] = {
     'truth/door/starboard/angles': {'vector': 'rad'},
     'truth/net/opening': {'vector': 'm'},
 }
-"""Units by topic and path that the contract fixes where the type leaves them open."""
+"""Units by topic and path that the topic table defines and the message type does not."""
 
 _BY_TYPE: Mapping[str, Mapping[str, str]] = {
     'geometry_msgs/msg/PointStamped': {'point': 'm'},
@@ -78,7 +78,7 @@ _BY_TYPE: Mapping[str, Mapping[str, str]] = {
 }
 
 Place = tuple[int, ...]
-"""Path of a column in its message: field and element numbers from the top down."""
+"""Position of a column in its message: field and element numbers from the top down."""
 
 
 @dataclass(frozen=True, order=True)
@@ -94,7 +94,7 @@ class FlatColumn:
     steps: tuple[str | int, ...]
 
     def value(self, message: Any) -> Any:
-        """Give the value in a message; None where an array of it is shorter."""
+        """Return the value in a message; None if its array is shorter."""
         value = message
         try:
             for step in self.steps:
@@ -124,13 +124,13 @@ class FlatLayout:
     left_out: dict[str, str] = field(default_factory=dict)
 
     def learn(self, message: Any) -> None:
-        """Add the columns of a message; an array too long for them stays out for good."""
+        """Add the columns of a message; an array that is once too long stays excluded."""
         self.columns.update(self._walk(message, (), '', '', ()))
         if self.left_out:
             self.columns = {column for column in self.columns if not self._is_out(column.path)}
 
     def finish(self) -> list[FlatColumn]:
-        """Give the columns in the order of the fields, without fields that need too many."""
+        """Return the columns in the order of the fields, without fields that need too many."""
         for path, count in self._top_level().items():
             if count > MAX_COLUMNS:
                 self.left_out[path] = f'would need {count} columns'
@@ -186,16 +186,16 @@ class FlatLayout:
 
 
 def as_seconds(stamp: int) -> str:
-    """Write nanoseconds as seconds with all their digits, which a float would not keep."""
+    """Write nanoseconds as seconds with all digits, which a float would lose."""
     sign = '-' if stamp < 0 else ''
     seconds, nanoseconds = divmod(abs(stamp), SECOND)
     return f'{sign}{seconds}.{nanoseconds:09d}'
 
 
 def as_text(value: Any, *, single: bool = False) -> str:
-    """Write a value for a cell: numbers as short as they can be read back, NaN and None as nothing.
+    """Write a value for a cell: numbers in the shortest exact form, NaN and None as an empty text.
 
-    ``single`` says that the number has 32 bits only, and so needs fewer digits.
+    ``single`` states that the number has 32 bits, and so needs fewer digits.
     """
     if value is None:
         return ''
@@ -207,12 +207,12 @@ def as_text(value: Any, *, single: bool = False) -> str:
 
 
 def singles(store: Typestore, type_name: str) -> frozenset[str]:
-    """Name the paths of a type's fields that are floats of 32 bits."""
+    """Return the paths of a type's fields that are 32-bit floats."""
     return frozenset(path for path, base in _leaves(store, type_name, '') if base == 'float32')
 
 
 def varies(store: Typestore, type_name: str) -> bool:
-    """True if messages of a type may differ in their columns, as sequences make them."""
+    """True if messages of a type can differ in their columns, since it contains sequences."""
     return any(base == 'sequence' for _, base in _leaves(store, type_name, ''))
 
 
@@ -231,7 +231,7 @@ def _leaves(store: Typestore, type_name: str, path: str) -> Iterator[tuple[str, 
 
 
 def field_unit(topic: str, type_name: str, path: str) -> str:
-    """Give the unit of a field, '' where it has none or none is known.
+    """Return the unit of a field, '' where it has none or none is known.
 
     Parameters
     ----------

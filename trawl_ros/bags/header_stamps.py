@@ -1,4 +1,4 @@
-"""Header stamps of stored messages, read by the bag's own types."""
+"""Header stamps of stored messages, read with the bag's own types."""
 
 from array import array
 from collections.abc import Callable, Collection
@@ -34,7 +34,7 @@ def stamp_reader(bag: Bag, topic: str) -> StampReader | None:
 
 
 def judge_headers(bag: Bag, topics: Collection[str]) -> StampJudgement:
-    """Judge the header stamps of topics, named in full, by reading through a bag once."""
+    """Check the header stamps of topics, by full name, in one pass through the bag."""
     readers = {topic: stamp_reader(bag, topic) for topic in bag.topics if topic in topics}
     stamps = array('q')
     for message in bag.raw(topics):

@@ -1,10 +1,12 @@
-"""Two sources on one topic: their channels or stamps differ, or their readings alternate;
-and clocks that look like two sources, as they stand still or were set back.
+"""Detection of two sources on one topic, and of clocks that only look like two sources.
 
-A publisher leaves no name in a bag. That there are two is known from what one cannot do: come by
-turns from two channels, give two readings for one time, go back in time again and again, jump
-to and fro between two courses at every reading, or give readings on a second course beside, and not
-instead of, those that its rate asks for.
+The channels or stamps of two sources differ, or their readings alternate. A clock that stands still
+or was set back can look like two sources.
+
+A publisher leaves no name in a bag. A topic has two sources if its readings do what one source
+cannot do: alternate between two channels, give two readings for one time, go back in time
+repeatedly, jump between two courses at every reading, or give readings on a second course in
+addition to those that the rate asks for.
 """
 
 from array import array
@@ -20,52 +22,59 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import SENSORS, Sample
 
 BLOCK = 60
-"""Readings that are looked at together; what is seldom is a fault and no second source."""
+"""Number of readings that are judged together; rare oddities are faults and no second source."""
 
 RETURNS = 3
-"""Times that a channel comes again behind another, from which on they take turns."""
+"""Number of returns of a channel after another one from which on the channels alternate."""
 
 SHARE = 0.25
-"""Part of a block that has stamps which one source does not give."""
+"""Share of a block with stamps that one source does not give."""
 
 JUMP = 2.0
-"""Least ratio of the step to the next reading to that to the one behind it, by which waves have
-moved on already."""
+"""Smallest ratio of the step to the next reading to the step to the one after that.
+
+Waves have moved on after two steps.
+"""
 
 LONGEST_STEP = 1_500_000_000
-"""Time (ns) between readings up to which they are looked at for this: slower ones may alternate
-because swell comes at twice their interval."""
+"""Longest interval (ns) between readings that are judged by jumps.
+
+Slower readings may alternate because the swell has twice their interval.
+"""
 
 ALTERNATING = 0.9
-"""Part of the steps in a block that turn back."""
+"""Share of the steps in a block that turn back."""
 
 MEMORY = 4 * BLOCK
-"""Readings among which those of a slower source are looked for."""
+"""Number of readings that are searched for those of a slower source."""
 
 VISITS = 6
-"""Readings on a second course from which on it is one."""
+"""Number of readings on a second course that make it a source."""
 
 SPREAD = 0.3
-"""Largest deviation, as a part, of what one source has in common: the distance of its readings from
-the other's, and the time between them."""
+"""Largest relative deviation of what readings of one source have in common.
+
+These are their distance from the other source's readings, and the time between them.
+"""
 
 MOST = 0.9
-"""Part of the readings on the first course that stand out by less than the second is off it."""
+"""Share of the readings on the first course that deviate by less than the second course does."""
 
 ONE_PERIOD = 1.5
-"""Largest ratio of the time between two readings that have one of the second course between them
-to that between two that have not: a reading that is wrong stands in another's place, and makes it
-two."""
+"""Largest ratio of the intervals around a reading of the second course to the other intervals.
+
+A wrong reading replaces a right one, and so makes the interval twice as long.
+"""
 
 
 BACK_NS = 10 * SECOND
 """Stamps that go back by more than this (ns) are those of a clock that was set back."""
 
 RECENT_READINGS = 2 * CONFIRMING_READINGS - 1
-"""Readings of which the middle one has a stamp that can be believed."""
+"""Number of readings whose median stamp is trusted."""
 
 SETTLED_READINGS = 10
-"""Readings behind a step back from which on the clock was set, and none is stamped falsely."""
+"""Number of readings after a step back that show a set clock and no false stamp."""
 
 
 class Doubt(NamedTuple):
@@ -76,7 +85,7 @@ class Doubt(NamedTuple):
 
 
 class SourceWatch:
-    """Watch for a second source, or a clock that tells no time, among the readings of a topic."""
+    """Detector of a second source, or of a clock that stands still, in the readings of a topic."""
 
     def __init__(self) -> None:
         # Numbers side by side, for there are as many of these as messages.
@@ -87,7 +96,7 @@ class SourceWatch:
         self._doubt: Doubt | None = None
 
     def take(self, channel: int, sample: Sample, sequence: int = 0) -> Doubt | None:
-        """Take a reading; give the doubt by the last judgement, None without one.
+        """Take a reading; return the doubt of the last judgement, None without one.
 
         Parameters
         ----------
@@ -115,7 +124,7 @@ class SourceWatch:
         return self._doubt
 
     def _watch_steps(self, stamp: int) -> None:
-        """Remember the last step back: count, and stamps before and after it."""
+        """Store the last step back: its count, and the stamps before and after it."""
         if not self._stamps:
             return
         before = self._stamps[-1]
@@ -138,7 +147,7 @@ class SourceWatch:
         # Sorted by its stamps, a bag does not tell these two apart.
         known = any(self._sequences) or channels.count(channels[0]) < len(channels)
         also = '' if known else ' (or one, whose clock was set back)'
-        return Doubt('source', f'has two sources{also}, for {why}; expected one instrument')
+        return Doubt('source', f'has two sources{also}: {why}; expected one instrument')
 
     def _set_back(self) -> Doubt | None:
         if self._step is not None and self._count - self._step[0] >= SETTLED_READINGS:
@@ -173,14 +182,14 @@ class SourceWatch:
                 return f'{back} of {number} stamps go back in time'
         near = least <= LONGEST_STEP and median(steps.tolist()) <= LONGEST_STEP
         if near and number == BLOCK and _alternates(values):
-            return f'{number} readings jump to and fro between two courses'
+            return f'{number} readings jump back and forth between two courses'
         if visits := _visits(stamps, readings):
-            return f'{visits} of {len(readings)} readings lie on a second course beside the first'
+            return f'{visits} of {len(readings)} readings lie on a second course'
         return ''
 
 
 def _still(stamps: StampArray) -> Doubt | None:
-    """Tell stamps (n,) that stand still."""
+    """Describe stamps (n,) that stand still."""
     last = int(stamps[-1])
     if np.any(stamps[-BLOCK // 2 :] != last):
         return None
@@ -190,22 +199,22 @@ def _still(stamps: StampArray) -> Doubt | None:
 
 
 def _clock_set_back(where: str) -> Doubt:
-    return Doubt('stamp', f'has a clock that was set back {where}; expected one that goes on (cut '
-                 'the bag there)')  # fmt: skip
+    return Doubt('stamp', f'has a clock that was set back {where}; expected one that '
+                 'runs on (split the bag there)')  # fmt: skip
 
 
 def _by_turns(channels: Sequence[int]) -> str:
-    """Tell that readings come from channels (n,) by turns; '' if they do not."""
+    """Describe readings that alternate between channels (n,); '' if they do not."""
     met: set[int] = set()
     returns = 0
     for before, channel in zip((None, *channels), channels, strict=False):
         returns += channel != before and channel in met
         met.add(channel)
-    return f'it comes by turns from {len(met)} channels' if returns >= RETURNS else ''
+    return f'it alternates between {len(met)} channels' if returns >= RETURNS else ''
 
 
 def _alternates(values: FloatArray) -> bool:
-    """True if any course of some values (n, k) jumps to and fro."""
+    """True if any course of the values (n, k) jumps back and forth."""
     with np.errstate(over='ignore', invalid='ignore'):
         steps = np.diff(values, axis=0)
         turns = np.count_nonzero(steps[1:] * steps[:-1] < 0.0, axis=0)
@@ -232,8 +241,9 @@ def _visits(stamps: StampArray, readings: FloatArray) -> int:
 
 
 def _beside(times: FloatArray, values: FloatArray) -> int:
-    """Count the readings (n,) on courses (n, k) that stand out from one, upward or downward, if
-    they are a source of their own; else 0.
+    """Count the readings that stand out from a course and form a source of their own, else 0.
+
+    ``values`` (n, k) hold k courses. Readings stand out upward or downward.
     """
     if len(values) < 2 * VISITS:
         return 0
@@ -250,9 +260,7 @@ def _beside(times: FloatArray, values: FloatArray) -> int:
 
 
 def _on_second(times: FloatArray, values: FloatArray, chosen: BoolArray) -> int:
-    """Count the ``chosen`` (n - 2,) of the inner ones of values (n,), if they are a source of their
-    own; else 0.
-    """
+    """Count the ``chosen`` (n - 2,) of the inner ``values`` if they form a source, else 0."""
     # Values that stand out of noise come at any time.
     if not _alike(np.diff(times[1:-1][chosen])):
         return 0
@@ -272,12 +280,12 @@ def _on_second(times: FloatArray, values: FloatArray, chosen: BoolArray) -> int:
 
 
 def _departures(values: FloatArray) -> FloatArray:
-    """Return by how much values (n, ...) depart from the mean of their neighbours (n - 2, ...)."""
+    """Return the differences of values (n, ...) from the mean of their neighbours, (n - 2, ...)."""
     return values[1:-1] - (values[:-2] + values[2:]) / 2.0
 
 
 def _alike(sizes: FloatArray) -> bool:
-    """True if most of some sizes (n,) deviate little."""
+    """True if most of the sizes (n,) deviate little."""
     # Of some ten numbers, which arrays take longer to sort.
     each = sizes.tolist()
     middle = float(median(each))
@@ -285,6 +293,6 @@ def _alike(sizes: FloatArray) -> bool:
 
 
 def _values(sample: Sample) -> tuple[float, ...] | None:
-    """Give what an instrument reads; None where it is no number on a course of its own."""
+    """Return the numbers of an instrument's reading; None if none of them follows a course."""
     fields = SENSORS[sample.topic].fields
     return tuple(field.get(sample) for field in fields if field.on_course) or None

@@ -1,6 +1,6 @@
 """Reader of bags in the order of log times: folders, single MCAP files, and damaged ones.
 
-What is readable is used; what is wrong with the rest is said in `Bag.problems`.
+Everything readable is used; `Bag.problems` lists the faults of the rest.
 """
 
 from collections import Counter
@@ -24,8 +24,20 @@ from trawl_ros.records.topics import NAMESPACE, find_topic
 
 @dataclass(frozen=True)
 class Received:
-    """Decoded message: full topic name, type, log time (ns), the message, its channel, and its
-    number of arrival (0 where it is not known).
+    """Decoded message of a bag.
+
+    Attributes
+    ----------
+    topic, type
+        Full topic name and message type.
+    log_time
+        Time of recording, ns.
+    message
+        The decoded message.
+    channel
+        Number of the channel.
+    sequence
+        Number of arrival, 0 if unknown.
     """
 
     topic: str
@@ -136,7 +148,7 @@ class Bag:
         return [file.path for file in self._source.files if not file.indexed]
 
     def metadata_faults(self, counts: Mapping[str, int], span: tuple[int, int] | None) -> list[str]:
-        """Hold ``metadata.yaml`` against all that was read; see `metadata_faults`."""
+        """Compare ``metadata.yaml`` with everything that was read; see `metadata_faults`."""
         return self._source.metadata_faults(counts, span)
 
     def definitions(self) -> dict[str, Definition]:
@@ -158,7 +170,7 @@ class Bag:
         return by_topic
 
     def raw(self, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
-        """Give messages undecoded, of all topics or of those named in full.
+        """Yield messages undecoded, of all topics or of those named in full.
 
         Raises
         ------
@@ -177,7 +189,7 @@ class Bag:
             raise BagError(f'{self.path}: holds no message that can be read{known}')
 
     def as_stored(self) -> Iterator[RawMessage]:
-        """Give all messages undecoded and unchecked, whatever their types; there may be none."""
+        """Yield all messages undecoded and unchecked, of any type; there may be none."""
         read = 0
         with reading(self.path, BagError, lambda: f'after {read} messages'):
             for stored in self._source.messages():
@@ -193,7 +205,7 @@ class Bag:
             )
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Received]:
-        """Give decoded messages, of all topics or of those named in full.
+        """Yield decoded messages, of all topics or of those named in full.
 
         Messages that cannot be decoded are left out and counted in `problems`.
 
@@ -218,7 +230,7 @@ class Bag:
             )
 
     def decode(self, raw: RawMessage) -> Any:
-        """Decode a message from `raw`: for callers who need few of many.
+        """Decode a message from `raw`, for callers that need few of many.
 
         Raises
         ------
@@ -234,7 +246,7 @@ class Bag:
         return self._decoders_made[raw.topic](raw.data)
 
     def types_of(self, topic: str) -> Typestore:
-        """Give the types by which a topic's messages are decoded.
+        """Return the types by which a topic's messages are decoded.
 
         Raises
         ------

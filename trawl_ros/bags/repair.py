@@ -1,7 +1,7 @@
 """Repair of a bag that was cut short or damaged, or whose metadata are missing or wrong.
 
-The damaged bag is only read. All that passes its checksum goes into the new one, which has
-indexes and metadata again; what is known to have been there and is not, is counted.
+The damaged bag is only read. Everything that passes its checksum goes into the new bag, with new
+indexes and metadata. Messages that are known to be missing are counted.
 """
 
 import re
@@ -35,10 +35,10 @@ _SECOND = 1_000_000_000
 class Repair:
     """Result of a repair.
 
-    ``out`` is None where the bag was sound and nothing was written. ``saved`` and ``lost`` give
-    messages by full topic name; ``lost`` are those that metadata or indexes had counted.
-    ``unread`` says that bytes were passed over in which there may have been more. ``problems``
-    has a sentence for each thing that was wrong.
+    ``out`` is None if the bag was sound and nothing was written. ``saved`` and ``lost`` give
+    messages by full topic name; ``lost`` are those that metadata or indexes had counted. ``unread``
+    is true if bytes were skipped that may have held more. ``problems`` has a sentence for each
+    fault.
     """
 
     path: Path
@@ -50,7 +50,7 @@ class Repair:
 
     @property
     def whole(self) -> bool:
-        """True if nothing can have been lost of the files' content."""
+        """True if nothing of the files' content can have been lost."""
         return not self.lost and not self.unread
 
 
@@ -124,7 +124,7 @@ def repair_bag(
 
 
 class _Damaged:
-    """Damaged bag, and the faults found in it."""
+    """Damaged bag, and its faults."""
 
     def __init__(self, path: Path) -> None:
         if not path.exists():
@@ -158,7 +158,7 @@ class _Damaged:
         return any(file.passed_bytes or file.damaged_chunks for file in self.files)
 
     def is_sound(self) -> bool:
-        """True if the bag has no fault, for which all of it is read."""
+        """True if the bag has no fault; all of it is read for this."""
         indexed = all(file.complete and file.indexed for file in self.files)
         if self._metadata is None or self.problems or not indexed:
             return False
@@ -212,7 +212,7 @@ class _Damaged:
             )
 
     def _decodes(self, stored: RawMessage, definition: Definition) -> bool:
-        """True unless a message is none of its type; a type that is not understood passes."""
+        """True unless a message does not match its type; types that are not understood pass."""
         topic = stored.topic
         if topic not in self._decoders:
             try:
@@ -302,6 +302,6 @@ class _Damaged:
 
 
 def _place(path: Path) -> tuple[str, int]:
-    """Stem and number of a file, by which trial_10 comes after trial_9."""
+    """Stem and number of a file, which place trial_10 after trial_9."""
     numbered = _NUMBERED.fullmatch(path.stem)
     return (numbered['stem'], int(numbered['number'])) if numbered else (path.stem, 0)

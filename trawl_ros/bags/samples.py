@@ -1,4 +1,4 @@
-"""Stream of samples from one or several bags, with the messages it rejects."""
+"""Stream of samples from one or several bags, with the rejected messages."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -14,12 +14,18 @@ from trawl_ros.records.samples import Sample
 from trawl_ros.records.topics import absolute
 
 BETWEEN_BAGS = 3_600_000_000_000
-"""Time (ns) put between two bags whose own stamps overlap, as those of simulations do."""
+"""Time (ns) between two bags whose own stamps overlap, as those of simulations do."""
 
 
 @dataclass
 class SampleStream:
     """Stream of the samples of bags, in the order of log times within each.
+
+    A bag that does not begin after the one before is shifted in time to follow it, so that tows
+    stay separate, whatever their clocks were. Samples with impossible stamps are left out and
+    counted. A bag with two sources on one topic is refused: which one is right is unknown, and an
+    estimate from both would describe neither. A bag whose clock stands still or was set back is
+    refused too.
 
     A bag that does not begin after the one before is moved in time to follow it: tows stay
     apart, whatever their clocks said. Samples whose stamp cannot be are left out and counted. A

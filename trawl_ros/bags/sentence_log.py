@@ -1,4 +1,4 @@
-"""Log of sentences from a bag, as a recorder on the ship's multiplexer would leave it."""
+"""Log of sentences from a bag, as a recorder on the ship's multiplexer writes it."""
 
 import math
 from collections import Counter
@@ -18,15 +18,15 @@ from trawl_ros.sentences.table import SentenceTable, load_table
 from trawl_ros.sentences.writer import SentenceWriter
 
 CLOCK = 'ship'
-"""System whose sentences say date and time."""
+"""System whose sentences state date and time."""
 
 
 @dataclass(frozen=True)
 class SentenceLog:
-    """Log that was written.
+    """Written log.
 
-    ``sentences`` were written by address, ``silent`` topics of the systems had no reading in the
-    bag, ``problems`` are sentences on what was wrong with the bag.
+    ``sentences`` are counts by address. ``silent`` are topics of the systems without a reading in
+    the bag. ``problems`` are sentences on the faults of the bag.
     """
 
     sentences: Mapping[str, int]

@@ -23,7 +23,7 @@ SUFFIXES = ('.mcap', '.db3')
 
 
 class StorageFile(Protocol):
-    """Storage file of a bag, whatever the storage."""
+    """Storage file of a bag, of any storage."""
 
     path: Path
     chunk_compressions: set[str]
@@ -32,7 +32,7 @@ class StorageFile(Protocol):
 
     @property
     def indexed(self) -> bool:
-        """True if messages can be found without a scan of the file."""
+        """True if messages can be found without scanning the file."""
 
     @property
     def damaged_chunks(self) -> int:
@@ -43,21 +43,21 @@ class StorageFile(Protocol):
         """Definition of each topic's messages."""
 
     def types(self) -> set[tuple[str, str]]:
-        """Give all (topic, type) there are."""
+        """Return all pairs (topic, type)."""
 
     def counts(self) -> dict[tuple[str, str], int] | None:
-        """Give the number of messages by (topic, type); None if the file does not say."""
+        """Return the number of messages by (topic, type); None if the file does not state it."""
 
     def messages(self) -> Iterator[RawMessage]:
-        """Give all messages in the order of their log times."""
+        """Return all messages in the order of their log times."""
 
 
 @dataclass(frozen=True)
 class BagFacts:
-    """Facts on a bag, beside its messages.
+    """Facts on a bag other than its messages.
 
-    ``version`` (of the metadata) is None and ``distro`` '' where the bag does not say;
-    ``compression`` is '' for none; ``sizes`` gives bytes by file name.
+    ``version`` (of the metadata) is None and ``distro`` '' if the bag does not state them.
+    ``compression`` is '' for none. ``sizes`` gives bytes by file name.
     """
 
     storage: str
@@ -130,18 +130,18 @@ class BagSource:
 
     @property
     def stated_count(self) -> int | None:
-        """Number of messages by the metadata; None if they do not say."""
+        """Number of messages by the metadata; None if they do not state it."""
         counts = self._counts()
         if counts is not None:
             return sum(counts.values())
         return self._metadata.message_count if self._metadata else None
 
     def types(self) -> set[tuple[str, str]]:
-        """Give all (topic, type) there are."""
+        """Return all pairs (topic, type)."""
         return set[tuple[str, str]]().union(*(file.types() for file in self.files))
 
     def messages(self) -> Iterator[RawMessage]:
-        """Give all messages in the order of their log times."""
+        """Yield all messages in the order of their log times."""
         streams = [file.messages() for file in self.files]
         size = sum(path.stat().st_size for path in self._paths)
         allowed = Allowance(self.files[0].path, size)
@@ -154,7 +154,7 @@ class BagSource:
         self._packed.report(self.files[0].path, self._report)
 
     def disagreements(self) -> list[str]:
-        """Sentences on disagreements of metadata and content; a file cut short says nothing."""
+        """Return sentences on disagreements of metadata and content; none for a file cut short."""
         counts = self._counts()
         if counts is None or self._metadata is None:
             return []
@@ -167,7 +167,7 @@ class BagSource:
         ]
 
     def metadata_faults(self, counts: Mapping[str, int], span: tuple[int, int] | None) -> list[str]:
-        """Hold the metadata against what was read: messages by topic, first and last time (ns)."""
+        """Compare the metadata with the messages by topic and the first and last time (ns)."""
         if self._metadata is None or self.folder is None:
             return []
         storages = {file.storage for file in self.files}

@@ -1,4 +1,4 @@
-"""Content of a topic's messages: whether they decode, can be measured, and come from one source."""
+"""Content of a topic's messages: whether they decode, are possible, and come from one source."""
 
 import math
 from collections import Counter
@@ -14,18 +14,18 @@ from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import RangeSample
 
 FIRST_MESSAGES = 20
-"""Messages of a topic that are decoded whatever it is."""
+"""Number of first messages of any topic that are decoded."""
 
 ONE_IN = 25
-"""Of those behind, and of no instrument, one in so many is decoded: they take the time."""
+"""Later messages that are not of an instrument: one in this many is decoded, to save time."""
 
 REASON_CHARACTERS = 200
-"""Longest reason that is repeated."""
+"""Longest quoted reason, characters."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """Finding: a word for scripts, the topic ('' for the bag), and a sentence."""
+    """Finding: a code for scripts, the topic ('' for the bag), and a sentence."""
 
     kind: str
     topic: str
@@ -52,7 +52,7 @@ class TopicContent:
         self._reasons: dict[str, str] = {}
 
     def take(self, bag: Bag, message: RawMessage) -> None:
-        """Take a message in."""
+        """Add a message."""
         self._seen += 1
         if not self._measured and self._seen > FIRST_MESSAGES and self._seen % ONE_IN:
             return
@@ -80,14 +80,14 @@ class TopicContent:
             self._doubt = self._watch.take(message.channel, sample, message.sequence)
 
     def findings(self, topic: str) -> list[Finding]:
-        """Give what was found, by the full name of the topic."""
+        """Yield the findings for the topic's full name."""
         found = [
             Finding('decode', topic, f'{count} of {self._decoded} messages looked at {what} (the '
                     f'first: {one_line(self._reasons[what], REASON_CHARACTERS)})')
             for what, count in self._failed.items()
         ]  # fmt: skip
         found += [
-            Finding('value', topic, f'{count} readings cannot be: {why}')
+            Finding('value', topic, f'{count} readings are impossible: {why}')
             for why, count in self._impossible.items()
         ]
         if self._doubt is not None:

@@ -1,6 +1,6 @@
-"""Writer of bags as ``ros2 bag record -s mcap``: a folder, ``metadata.yaml``, MCAP files.
+"""Writer of bags like ``ros2 bag record -s mcap``: a folder, ``metadata.yaml``, MCAP files.
 
-The same messages give the same bytes: nothing of the clock, the machine or the path goes in.
+Equal messages give equal bytes: clock, machine and path do not enter.
 """
 
 from collections.abc import Mapping, Sequence
@@ -87,7 +87,7 @@ class BagWriter:
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Names of the files so far; the last is being written."""
+        """Names of the files so far; the last one is being written."""
         return (*(file.name for file in self._finished), self._file.path.name)
 
     def declared(self, topic: str) -> bool:
@@ -156,7 +156,7 @@ class BagWriter:
         self._counts[topic] += 1
 
     def split(self) -> None:
-        """Finish the file in progress and go on in a next one."""
+        """Finish the current file and continue in a new one."""
         try:
             self._file.finish()
         except OSError as reason:
@@ -167,9 +167,9 @@ class BagWriter:
     def flush(self) -> None:
         """Flush all messages so far, so that readers find them.
 
-        Ends the chunk in progress and brings ``metadata.yaml`` up to date, so that a process
-        killed later leaves at least this much. Chunks that end early compress less well: once
-        per second is often enough.
+        It ends the current chunk and updates ``metadata.yaml``, so that a process killed later
+        leaves at least this much. Chunks that end early compress less well: once per second is
+        often enough.
         """
         try:
             self._file.flush()

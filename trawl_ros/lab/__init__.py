@@ -1,1 +1,1 @@
-"""Validation, benchmark, studies and demo: run once in a while, imported by nothing else."""
+"""Validation, benchmark and demo of the package; no other part imports them."""

@@ -1,1 +1,1 @@
-"""The one boundary between records and ROS messages, and their bytes (CDR)."""
+"""Conversion between records and ROS messages, and encoding of messages as CDR bytes."""

@@ -12,12 +12,12 @@ from rosbags.typesys import Stores, get_typestore
 from trawl_ros.core.errors import MessageError
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
-"""Types are named 'package/msg/Name'; its classes are what the project calls messages."""
+"""Type store: types are named 'package/msg/Name', and its classes are the project's messages."""
 
 _EXAMPLE = 'sensor_msgs/msg/JointState'
 
 DECODING_ERRORS = (SerdeError, struct.error, ValueError, IndexError, MemoryError)
-"""All that generated decoders raise when the bytes are not what the type says."""
+"""Exceptions that generated decoders raise if the bytes do not match the type."""
 
 
 def serialize(message: Any, type_name: str | None = None) -> bytes:

@@ -1,4 +1,4 @@
-"""Command messages to nodes: wanted warp lengths, the ship's speed and rate of turn, faults."""
+"""Command messages to nodes: warp lengths, the ship's speed and rate of turn, and faults."""
 
 import math
 from typing import Any
@@ -17,7 +17,7 @@ FAULT_COMMAND = 'command/fault'
 
 
 def winch_command(stamp: int, port: float, starboard: float) -> TopicMessage:
-    """Message of wanted warp lengths (m); NaN leaves that winch as it is."""
+    """Build the message of commanded warp lengths (m); NaN leaves that winch unchanged."""
     wanted = zip(WINCH_NAMES, (port, starboard), strict=True)
     lengths = {name: float(length) for name, length in wanted if not math.isnan(length)}
     return WINCH_COMMAND, ros.sensor_msgs__msg__JointState(
@@ -30,7 +30,10 @@ def winch_command(stamp: int, port: float, starboard: float) -> TopicMessage:
 
 
 def vessel_command(stamp: int, speed: float, yaw_rate: float) -> TopicMessage:
-    """Message of a wanted speed through water (m/s) and rate of turn (rad/s, positive to port)."""
+    """Build the message of a commanded speed and rate of turn.
+
+    Speed is through the water, m/s; the rate of turn is positive to port, rad/s.
+    """
     return VESSEL_COMMAND, ros.geometry_msgs__msg__TwistStamped(
         header(stamp, TOPICS[VESSEL_COMMAND].frame),
         ros.geometry_msgs__msg__Twist(
@@ -41,17 +44,17 @@ def vessel_command(stamp: int, speed: float, yaw_rate: float) -> TopicMessage:
 
 
 def fault_command(where: str, what: str) -> TopicMessage:
-    """Message of a fault at an instrument's topic or topic/quantity; 'none' ends all there."""
+    """Build the message of a fault at a topic or topic/quantity; 'none' ends all faults there."""
     return FAULT_COMMAND, ros.diagnostic_msgs__msg__KeyValue(where, what)
 
 
 def read_fault_command(message: Any) -> tuple[str, str]:
-    """Read the place and kind of a fault; the node that has the instrument checks them."""
+    """Read place and kind of a fault; the node of the instrument checks them."""
     return message.key.strip().removeprefix('/'), message.value.strip()
 
 
 def read_winch_command(message: Any) -> tuple[float | None, float | None]:
-    """Read the wanted warp lengths (port, starboard), m; None for a winch not named.
+    """Read the commanded warp lengths (port, starboard), m; None for a winch that is not named.
 
     Raises
     ------
@@ -82,7 +85,7 @@ def read_winch_command(message: Any) -> tuple[float | None, float | None]:
 
 
 def read_vessel_command(message: Any) -> tuple[float, float]:
-    """Read the wanted speed through water (m/s) and rate of turn (rad/s, positive to port).
+    """Read the commanded speed through the water (m/s) and rate of turn (rad/s, positive to port).
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Diagnostic arrays: status of nodes, and findings of the identification."""
+"""Diagnostic arrays: status of nodes, and findings of the diagnosis."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -51,7 +51,7 @@ def read_statuses(message: Any) -> tuple[Status, ...]:
 
 
 def read_number(status: Status, key: str) -> float:
-    """Read a number among the values of a status.
+    """Read a number from the values of a status.
 
     Raises
     ------

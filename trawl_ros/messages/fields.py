@@ -8,7 +8,7 @@ import numpy as np
 
 
 def fields_of(message: Any) -> Iterator[tuple[Any, str]]:
-    """Give all fields of a message and of those within it, each with who has it."""
+    """Return all fields of a message and of its nested messages, each with its owner."""
     for name in getattr(message, '__dataclass_fields__', ()):
         value = getattr(message, name)
         if hasattr(value, '__dataclass_fields__'):
@@ -22,14 +22,14 @@ def fields_of(message: Any) -> Iterator[tuple[Any, str]]:
 
 
 def not_finite(message: Any) -> set[str]:
-    """Name the fields of a message in which there is a number that is not finite."""
+    """Return the names of the fields that hold a number that is not finite."""
     return beyond(message, math.inf)
 
 
 def beyond(message: Any, most: float, *, unknown: bool = False) -> set[str]:
-    """Name the fields of a message in which a number is not finite, or larger than ``most``.
+    """Return the names of the fields that hold a number above ``most`` or not finite.
 
-    With ``unknown`` those that are not finite say that something is unknown, and pass.
+    With ``unknown``, numbers that are not finite mean an unknown value and are allowed.
     """
     found = set()
     for owner, name in fields_of(message):

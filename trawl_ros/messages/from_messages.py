@@ -1,8 +1,8 @@
 """Decoding of messages into samples: the reverse of `to_messages`.
 
-Messages may come from bags of others, decoded with the definitions they carry, so only
-attributes are relied on. Readings that say they are missing become NaN; content that
-contradicts the topic raises `MessageError` naming it.
+Messages may come from bags of other projects and are decoded with the definitions in the bag, so
+only attributes are used. Missing readings become NaN. Content that contradicts the topic raises
+`MessageError`, which names the topic.
 """
 
 import math
@@ -51,7 +51,7 @@ def to_sample(topic: str, message: Any) -> Sample:
     except Exception as reason:
         kind = getattr(message, '__msgtype__', type(message).__name__)
         raise MessageError(
-            f'{topic}: a {kind} without what its readings are taken from ({short(reason)})'
+            f'{topic}: a {kind} that lacks the fields of its readings ({short(reason)})'
         ) from reason
 
 

@@ -1,7 +1,7 @@
 """Markers of gear and ship for RViz and Foxglove: ropes coloured by tension, doors as plates.
 
-Namespace and id of a marker stay the same from picture to picture, so that viewers replace
-the old one instead of piling them up.
+Namespace and id of a marker stay the same in every message, so that viewers replace the earlier
+marker instead of adding another.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,39 +17,40 @@ from trawl_ros.records.topics import DOOR_FRAMES, MAP, VESSEL, WINCH_NAMES
 from trawl_ros.records.truth import SIDES, DoorTruth, GearPicture, Polyline, SchoolTruth
 
 FULL_SCALE = 200e3
-"""Tension (N) that is drawn in full red; fixed, so that colours compare between pictures."""
+"""Tension (N) drawn in full red; it is fixed, so that colours of two pictures can be compared."""
 
 LINE_WIDTH = 0.3
-"""m: thin beside a net's mouth, yet visible with 900 m of warp in view."""
+"""Line width, m: thin near the net's mouth, and visible with 900 m of warp in view."""
 
 THICKNESS = 0.1
-"""Thickness of a door as drawn, as a part of its length."""
+"""Thickness of a drawn door as a share of its length."""
 
 VESSEL_LENGTH = 100.0
-"""m; assumed, for scale only: nothing else in the project knows how long the ship is."""
+"""Length of the drawn ship, m; assumed, since the project has no length of the ship."""
 
 _HULL = np.array(
     [[0.0, 1.0], [0.65, 1.0], [0.85, 0.6], [1.0, 0.0], [0.85, -0.6], [0.65, -1.0], [0.0, -1.0]]
 )
-"""Waterline as (lengths before the blocks, half beams to port), once around from port aft."""
+"""Waterline as (lengths ahead of the blocks, half beams to port), from the port quarter around."""
 
 _BEAM_PER_BLOCKS = 20.0 / 12.0
-"""Beam over the distance between the blocks, as of the default gear's ship."""
+"""Beam over the distance between the blocks, as on the ship of the default gear."""
 
 RAMP = np.array([[0.15, 0.35, 0.85], [0.10, 0.75, 0.55], [0.95, 0.80, 0.15], [0.85, 0.10, 0.10]])
-"""Red, green and blue (0 to 1) from slack to `FULL_SCALE`, at even distances."""
+"""Red, green and blue (0 to 1) at equal steps from slack to `FULL_SCALE`."""
 
 _STEEL = ros.std_msgs__msg__ColorRGBA(0.45, 0.45, 0.50, 1.0)
 _FISH = ros.std_msgs__msg__ColorRGBA(0.95, 0.65, 0.40, 0.5)
 
 
 def gear_markers(picture: GearPicture) -> TopicMessage:
-    """Draw the gear in ``map``: a line per rope, all netting in one marker, a box per door, and
-    the ship's waterline ahead of the towing blocks; and an ellipsoid per school of fish.
+    """Draw the gear in the frame ``map``.
 
-    Lines that share a name become one marker, since a viewer takes two thousand points in its
-    stride but not a thousand markers. ``picture.door_size`` is (length along the door's x,
-    height along its z), m.
+    A rope becomes a line, all netting one marker, a door a box, a school of fish an ellipsoid. The
+    ship's waterline lies ahead of the towing blocks.
+
+    Lines of one name become one marker: viewers draw two thousand points easily, but not a thousand
+    markers. ``picture.door_size`` is (length along the door's x, height along its z), m.
     """
     named: dict[str, list[Polyline]] = {}
     for line in picture.lines:
@@ -95,7 +96,7 @@ def _line(stamp: int, line: Polyline) -> Any:
 
 
 def _lines(stamp: int, name: str, lines: Sequence[Polyline]) -> Any:
-    """Line-list marker of several lines; each pair of points has a colour at either end."""
+    """Line-list marker of several lines; each pair of points has a colour at both ends."""
     sizes = np.array([len(line.points) for line in lines])
     every = np.concatenate([line.points for line in lines])
     # Each point but the last of a line begins a pair.

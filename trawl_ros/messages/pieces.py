@@ -1,7 +1,7 @@
-"""Parts of messages of truth and samples, written and read: vectors, poses, covariances, winches.
+"""Reading and writing of parts of messages: vectors, poses, covariances and winches.
 
-Covariances carry the *stated* noise. `UNKNOWN_VARIANCE` marks a part of an orientation or
-position that the sensor does not measure, `ABSENT` a whole quantity it does not have.
+Covariances hold the *stated* noise. `UNKNOWN_VARIANCE` marks a component of an orientation or
+position that the sensor does not measure, and `ABSENT` a quantity that it does not have.
 """
 
 import math
@@ -24,25 +24,25 @@ ANGLES = ('roll', 'pitch', 'yaw')
 _IN_ORDER = list(WINCH_NAMES)
 
 UNKNOWN_VARIANCE = 1e6
-"""rad² or m²: so large that every consumer reads it as 'not measured'."""
+"""Variance (rad² or m²) so large that consumers treat the component as not measured."""
 
 ABSENT = -1.0
-"""First entry of an Imu covariance whose quantity the sensor does not have."""
+"""First element of an Imu covariance if the sensor does not have the quantity."""
 
 
 def topic_header(stamp: int, topic: str) -> ros.std_msgs__msg__Header:
-    """Give the header of a topic at a stamp (ns)."""
+    """Return the header of a topic at a stamp (ns)."""
     return header(stamp, TOPICS[topic].frame)
 
 
 def vector(values: Any) -> ros.geometry_msgs__msg__Vector3:
-    """Give a Vector3 of three numbers."""
+    """Return a Vector3 of three numbers."""
     x, y, z = values
     return ros.geometry_msgs__msg__Vector3(float(x), float(y), float(z))
 
 
 def pose(position: Any, orientation: Any) -> ros.geometry_msgs__msg__Pose:
-    """Give a Pose of position (3,) and quaternion (x, y, z, w)."""
+    """Return a Pose of a position (3,) and a quaternion (x, y, z, w)."""
     x, y, z = map(float, position)
     return ros.geometry_msgs__msg__Pose(
         ros.geometry_msgs__msg__Point(x, y, z),
@@ -94,7 +94,7 @@ def imu(
 
 
 def joint_column(topic: str, joint_state: Any, field: str) -> dict[str, float]:
-    """Read one field of a JointState by joint name; an empty field is a missing one (NaN).
+    """Read one field of a JointState by joint name; an empty field gives NaN.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Point clouds: one row of 32-bit floats per point, as every viewer reads them."""
+"""Point clouds of one row of 32-bit floats per point, which every viewer reads."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -44,7 +44,7 @@ def point_cloud(header: Any, columns: Mapping[str, FloatArray]) -> Any:
 
 
 def read_point_cloud(topic: str, message: Any, names: Sequence[str]) -> FloatArray:
-    """Read fields of 32-bit floats off a point cloud.
+    """Read fields of 32-bit floats from a point cloud.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 
 UNIT_TOLERANCE = 1e-3
-"""Quaternions further from length 1 than this are not orientations."""
+"""Largest deviation of a quaternion's length from 1 for an orientation."""
 
 
 def to_quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
@@ -52,6 +52,6 @@ def to_angles(quaternion: Sequence[float]) -> tuple[float, float, float]:
 
 
 def about_z(angle: float) -> FloatArray:
-    """Return the matrix (3, 3) that turns components in a yawed frame into fixed ones."""
+    """Return the matrix (3, 3) from components in a yawed frame to those in the fixed frame."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

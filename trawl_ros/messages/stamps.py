@@ -14,9 +14,9 @@ MARKERS = 'visualization_msgs/msg/MarkerArray'
 
 
 def header_stamp(type_name: str, data: bytes) -> int | None:
-    """Return the stamp (ns) of a message's header; None where it has none.
+    """Return the stamp (ns) of a message's header; None without a header.
 
-    An array of markers has that of its first marker.
+    For an array of markers it is the stamp of the first marker.
     """
     if type_name == MARKERS:
         # The header follows the number of markers.
@@ -68,13 +68,13 @@ def stamp_of(message: Any) -> int:
 
 
 ENCAPSULATION = 4
-"""Bytes of CDR before the message, of which the second tells the order of bytes."""
+"""Number of CDR bytes ahead of the message; the second one gives the byte order."""
 
 _TIMES = {0: struct.Struct('>iI'), 1: struct.Struct('<iI')}
 
 
 def stamp_in(data: bytes, offset: int = ENCAPSULATION) -> int | None:
-    """Read the stamp (ns) at an offset in CDR; None where the bytes are too few or no CDR."""
+    """Read the stamp (ns) at an offset in CDR; None if the bytes are too few or not CDR."""
     try:
         seconds, nanoseconds = _TIMES[data[1]].unpack_from(data, offset)
     except (struct.error, KeyError, IndexError):

@@ -29,10 +29,10 @@ from trawl_ros.records.truth import (
 def door_truth(
     topic: str, odometry: Any, angles: Any | None = None, wrench: Any | None = None
 ) -> DoorTruth:
-    """Assemble a door from its odometry and, where given, its angles and wrench.
+    """Build the truth of a door from its odometry and, if given, its angles and wrench.
 
-    What was not given is NaN: a pressure sensor needs no more than the pose. ``topic`` is
-    the odometry's, for error messages.
+    Values that are not given are NaN: a pressure sensor needs only the pose. ``topic`` is that of
+    the odometry, for error messages.
     """
     missing = np.full(3, math.nan)
     pose, twist = odometry.pose.pose, odometry.twist.twist
@@ -60,9 +60,9 @@ def winch_truth(topic: str, joint_state: Any) -> tuple[WinchTruth, WinchTruth]:
 def net_truth(
     opening: Any, sonar_pose: Any, mouth: Any | None = None, section: Any | None = None
 ) -> NetTruth:
-    """Assemble the net from its opening, the sonar's pose and, where given, mouth and section.
+    """Build the truth of the net from opening, sonar pose and, if given, mouth and section.
 
-    Without them their points have shape (0, 3).
+    Without mouth or section their points have shape (0, 3).
     """
     through = np.zeros((0, 3))
     if section is not None:
@@ -93,13 +93,13 @@ def seabed_truth(depths: Any) -> SeabedTruth:
 
 
 def observables_truth(joint_state: Any) -> Observables:
-    """Read the observables from ``truth/observables``; what is not there is NaN."""
+    """Read the observables from ``truth/observables``; missing ones are NaN."""
     values = joint_column('truth/observables', joint_state, 'position')
     return Observables(**{name: values.get(name, math.nan) for name in OBSERVABLES})
 
 
 def vessel_truth(odometry: Any, velocity_water: Any) -> VesselTruth:
-    """Assemble the ship from its odometry and its velocity through the water."""
+    """Build the truth of the ship from its odometry and its velocity through the water."""
     pose, twist = odometry.pose.pose, odometry.twist.twist
     _, _, heading = read_angles('truth/vessel/odom', pose.orientation)
     return VesselTruth(

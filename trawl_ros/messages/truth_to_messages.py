@@ -34,7 +34,7 @@ def clock_message(stamp: int) -> TopicMessage:
 
 
 def truth_messages(truth: Truth) -> list[TopicMessage]:
-    """Convert the truth of one instant into all truth topics but the markers."""
+    """Convert the truth of one instant into messages on all truth topics except the markers."""
     messages: list[TopicMessage] = []
     for side, door in zip(SIDES, truth.doors, strict=True):
         messages += _door(truth.stamp, side, door)

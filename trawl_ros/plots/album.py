@@ -1,4 +1,4 @@
-"""Pictures of a tow and the page that has them all."""
+"""Pictures of a tow, and the page that shows them all."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ from trawl_ros.report.style import clock
 PAGE = 'index.html'
 
 EARLY_MIDDLE_LATE = (0.05, 0.5, 0.95)
-"""Parts of a tow at which the gear is drawn unless told otherwise."""
+"""Fractions of a tow at which the gear is drawn by default."""
 
 MOST_TIMES = 100
 
@@ -154,7 +154,7 @@ def _chosen(times: Sequence[float], tow: TowHistory) -> list[float]:
 
 
 class Album:
-    """Pictures of one tow as they are made, and what could not be drawn."""
+    """Pictures of one tow, and notes on what could not be drawn."""
 
     def __init__(
         self, bag: Path, folder: Path, tow: TowHistory, gear: GearRecord, namespace: str
@@ -199,7 +199,7 @@ class Album:
                 )  # fmt: skip
 
     def film(self, stopped: Callable[[], bool], on_progress: OnProgress) -> bool:
-        """Draw the animation; say whether it was stopped and ends early."""
+        """Draw the animation; return whether it was stopped early."""
         frames = []
         for moment, picture in self._read(film.frame_times(self._tow)):
             shape = gear_shape(moment, self._tow, self._gear)

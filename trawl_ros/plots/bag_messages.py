@@ -1,4 +1,4 @@
-"""Messages of the bags of one tow, on one time line, thinned out where there are many."""
+"""Messages of the bags of one tow on one time line, thinned out if there are many."""
 
 import heapq
 from collections import Counter
@@ -15,10 +15,10 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.records.topics import NAMESPACE, absolute
 
 MOST_MESSAGES = 20_000
-"""Of one topic: where there are more, only every second, third … is drawn."""
+"""Largest number of messages of a topic; of more, only every second, third … is drawn."""
 
 PROGRESS_EVERY = 500
-"""Messages."""
+"""Number of messages between two reports of progress."""
 
 
 class TowMessage(NamedTuple):
@@ -108,7 +108,7 @@ class BagMessages:
         on_progress: OnProgress = ignore,
         stopped: Callable[[], bool] = lambda: False,
     ) -> bool:
-        """Give each message to a function.
+        """Return each message to a function.
 
         Parameters
         ----------
@@ -171,7 +171,7 @@ class BagMessages:
 
 
 def _refuse_two_tows(spans: Mapping[str, list[tuple[int, int, Path]]]) -> None:
-    """Refuse bags that have one topic at the same time; ``spans`` are log times (ns) by topic."""
+    """Reject bags that have one topic at the same time; ``spans`` are log times (ns) by topic."""
     for topic, parts in spans.items():
         parts.sort(key=lambda part: part[:2])
         for (_, end, first), (start, _, second) in pairwise(parts):

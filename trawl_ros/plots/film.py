@@ -14,12 +14,12 @@ from trawl_ros.plots.records import GearShape, SonarPicture, TowHistory
 from trawl_ros.report import style
 
 MOST_FRAMES = 100
-"""However long the tow was: a frame of 0.8 m pixels is held in memory until the film is done."""
+"""Largest number of frames: those of 0.8 m pixels stay in memory until the film is written."""
 
 LEAST_APART_S = 1.0
 FRAMES_PER_S = 10
 DPI = 75
-"""A film is about 800 pixels wide, some MB."""
+"""Resolution: a film is about 800 pixels wide and has some MB."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Frame:
 
 
 def frame_times(tow: TowHistory) -> list[float]:
-    """Times (s) of the frames, even from the start to the end."""
+    """Times (s) of the frames, evenly from the start to the end."""
     frames = int(np.clip(tow.duration_s / LEAST_APART_S + 1, 1, MOST_FRAMES))
     return [float(time) for time in np.linspace(0.0, tow.duration_s, frames)]
 

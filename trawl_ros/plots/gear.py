@@ -27,7 +27,7 @@ BOLD = (
     'mouth',
     *DOOR_FRAMES.values(),
 )
-"""Ends of the names of what is drawn bold."""
+"""Name endings of what is drawn bold."""
 
 DOOR_COLOURS = {DOOR_FRAMES['port']: style.PORT, DOOR_FRAMES['starboard']: style.STARBOARD}
 
@@ -38,15 +38,15 @@ LEFT_IN, RIGHT_IN, TITLE_IN, FOOT_IN, GAP_IN = 0.8, 0.25, 0.55, 0.65, 0.4
 """Room (inches) beside, above, below and between the views."""
 
 LEAST_HEIGHT = 0.13
-"""The views from above and from the side are at least this part of their width high."""
+"""Smallest height of the views from above and from the side, as a share of their width."""
 
 Extent = tuple[FloatArray, FloatArray]
-"""Least and greatest astern, to port, up (3,), m."""
+"""Lower and upper bounds (3,) astern, to port and up, m."""
 
 
 @dataclass(frozen=True)
 class Views:
-    """A figure with views from above and from the side, and room (axes) to the right of them."""
+    """Figure with views from above and from the side, and room (axes) to the right of them."""
 
     figure: Figure
     top: Axes
@@ -70,8 +70,8 @@ def gear_figure(shape: GearShape, name: str) -> Figure:
 def lay_out(whole: Extent, *, width: float, right: float) -> Views:
     """Make a figure for views of ``whole``, all to one scale.
 
-    ``width`` (inches) is that of the views from above and from the side; they are as high as the
-    scale wants. ``right`` is the width of what stands beside them.
+    ``width`` (inches) is that of the views from above and from the side; their height follows from
+    the scale. ``right`` is the width of what is drawn next to them.
     """
     low, high = whole
     margin = 0.03 * float((high - low).max())
@@ -103,7 +103,7 @@ def lay_out(whole: Extent, *, width: float, right: float) -> Views:
 
 
 def extent(shapes: Sequence[GearShape], *, rear: bool = False) -> Extent:
-    """Bounds of the views, with fish only if near; from behind without ship and warps."""
+    """Bounds of the views: fish only if near; the view from behind without ship and warps."""
     points = [
         strand.pieces.reshape(-1, 3)
         for shape in shapes
@@ -116,7 +116,7 @@ def extent(shapes: Sequence[GearShape], *, rear: bool = False) -> Extent:
 
 
 def prepare_rear(rear: Axes, wake: Extent) -> None:
-    """Labels and limits of the view from behind: port is on the left, as for who looks ahead."""
+    """Set labels and limits of the view from behind: looking ahead, port is on the left."""
     low, high = wake
     margin = 0.06 * float((high - low)[1:].max())
     style.quiet(rear)

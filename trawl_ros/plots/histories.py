@@ -21,14 +21,14 @@ LONGEST_PERIODS, LEAST_SILENCE_S = 4.0, 10.0
 """A sensor is silent when nothing has come for so many of its periods, and for so long (s)."""
 
 FAR_OUT = 3.0
-"""Readings are cut off at the edge where all of them would need so many times the height."""
+"""Readings are cut at the edge if all of them need this many times the height."""
 
 
 ORDINARY = (5.0, 95.0)
-"""Between these percentiles readings are taken for what the quantity does, not for outliers."""
+"""Percentiles between which readings count as ordinary and not as outliers."""
 
 MANY = 1000
-"""Of so many dots each is drawn fainter."""
+"""Number of dots from which on each is drawn fainter."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,10 @@ class Curve:
 
 @dataclass(frozen=True)
 class Panel:
-    """Panel of curves on one axis: ``scale`` times SI is shown, never less than ``least`` of it."""
+    """Panel of curves on one axis.
+
+    Values are ``scale`` times SI, over a range of at least ``least``.
+    """
 
     label: str
     curves: tuple[Curve, ...]
@@ -88,7 +91,7 @@ PANELS = (
 
 
 def present_panels(tow: TowHistory) -> list[Panel]:
-    """Panels for which the bag holds anything."""
+    """Panels for which the bag holds data."""
     return [
         panel
         for panel in PANELS
@@ -97,7 +100,7 @@ def present_panels(tow: TowHistory) -> list[Panel]:
 
 
 def left_out(tow: TowHistory) -> list[str]:
-    """Sentence on all that is missing in the histories, none where nothing is."""
+    """Return a sentence on everything missing in the histories, or none."""
     sentences = []
     shown = present_panels(tow)
     if missing := [_plain(panel) for panel in PANELS if panel not in shown]:
@@ -121,7 +124,7 @@ def _plain(panel: Panel) -> str:
 
 
 def history_figure(tow: TowHistory) -> Figure:
-    """Draw all panels of which the bag holds anything, over the same minutes."""
+    """Draw all panels for which the bag holds data, over the same time axis."""
     panels = present_panels(tow)
     rows = (len(panels) + 1) // 2
     figure = Figure(figsize=(12.0, 0.9 + 2.0 * rows), layout='constrained')
@@ -151,7 +154,7 @@ _SIDES = (Patch(color=style.PORT), Patch(color=style.STARBOARD))
 
 
 def _draw(axes: Axes, panel: Panel, tow: TowHistory, marks: dict[str, Line2D | Patch]) -> None:
-    """Draw one panel, and put into ``marks`` what is seen of readings in it."""
+    """Draw one panel, and add the kinds of marks in it to ``marks``."""
     style.quiet(axes)
     truth, measured = (
         {curve: _shown(there[curve.name], panel) for curve in panel.curves if curve.name in there}
@@ -174,7 +177,7 @@ def _draw(axes: Axes, panel: Panel, tow: TowHistory, marks: dict[str, Line2D | P
 
 
 def _label(axes: Axes, panel: Panel) -> None:
-    """Label a panel on the left above, with the curves' names in their colours beside it."""
+    """Label a panel at the top left, with the curves' names in their colours."""
     what, _, unit = panel.label.partition(' / ')
     text = axes.text(
         0.0, 1.03, f'{what} / {unit}', ha='left', va='bottom', transform=axes.transAxes
@@ -196,7 +199,7 @@ def _shown(series: Series, panel: Panel) -> Series:
 def _limits(
     truth: Sequence[Series], measured: Sequence[Series], least: float
 ) -> tuple[float, float]:
-    """Limits that hold all values but far outliers that would hide the rest."""
+    """Limits that hold all values except far outliers that would hide the rest."""
     true, read = (
         np.concatenate([[], *(series.values[np.isfinite(series.values)] for series in kind)])
         for kind in (truth, measured)
@@ -235,7 +238,7 @@ def _dots(axes: Axes, series: Series, colour: str, limits: tuple[float, float]) 
 
 
 def silences(series: Series, duration: float) -> list[tuple[float, float]]:
-    """Intervals (s, from and to) without readings, NaN counting as none, before the end too."""
+    """Intervals (s, from and to) without readings, also at the end; NaN counts as no reading."""
     times = series.times[np.isfinite(series.values)]
     if len(series.times) < 2 or not len(times):
         return [(0.0, duration)] if not len(times) else []
@@ -246,7 +249,7 @@ def silences(series: Series, duration: float) -> list[tuple[float, float]]:
 
 
 def _silences(axes: Axes, spans: Sequence[tuple[float, float]], colour: str, number: int) -> bool:
-    """Draw bars at the panel's foot, one row per curve; return True if there are any."""
+    """Draw bars at the bottom of the panel, one row per curve; return True if there are any."""
     foot = blended_transform_factory(axes.transData, axes.transAxes)
     for begin, end in spans:
         axes.fill_between(

@@ -23,18 +23,18 @@ from trawl_ros.records.topics import absolute
 GEAR, MOUTH, POSE = 'truth/gear', 'truth/net/mouth', 'truth/sonar/pose'
 SECTION, IMAGE, SCAN = 'truth/sonar/section', 'sonar/image', 'sonar/scan'
 MOST_AWAY_S = {GEAR: 10.0, MOUTH: 10.0, POSE: 10.0, SECTION: 10.0, IMAGE: 120.0, SCAN: 120.0}
-"""Largest distance from a chosen time at which a message is drawn for it."""
+"""Longest time between a chosen instant and a message that is drawn for it."""
 
 
 Sweep = tuple[SonarImageSample, SonarScanSample]
 
 READING_AWAY_S = 60.0
-"""A reading of the opening belongs to a sweep that is not further away."""
+"""Longest time between a sweep and a reading of the opening that belongs to it."""
 
 
 @dataclass(frozen=True)
 class Moment:
-    """Moment: the messages nearest to ``time`` (s), by topic."""
+    """Messages nearest to ``time`` (s), by topic."""
 
     time: float
     messages: Mapping[str, Any]
@@ -45,8 +45,8 @@ def read_moments(
 ) -> Iterator[Moment]:
     """Yield the messages nearest to each of the times (s, rising).
 
-    Of each topic no more messages are kept than there are times, and each is decoded only when
-    its turn comes.
+    At most as many messages of a topic are kept as there are times, and each is decoded only when
+    needed.
     """
     bag = Bag(path, namespace=namespace)
     names = {absolute(topic, namespace): topic for topic in topics}
@@ -87,14 +87,14 @@ def corners(moment: Moment) -> FloatArray:
 def read_sweeps(
     path: Path, tow: TowHistory, times: Sequence[float], namespace: str
 ) -> tuple[list[SonarPicture | None], list[str]]:
-    """Find the sweep that came in nearest to each of the times (s, rising).
+    """Find the sweep received nearest to each of the times (s, rising).
 
     Returns
     -------
     list
-        A picture per time; None where no sweep is near, or nobody knows where its beams look.
+        A picture per time; None if no sweep is near, or the angles of its beams are unknown.
     list
-        A sentence for each sweep of the latter kind.
+        A sentence for each sweep with unknown angles.
     """
     sweeps: list[Sweep | None] = []
     problems: list[str] = []
@@ -158,7 +158,7 @@ def _picture(sweep: Sweep, moment: Moment, tow: TowHistory) -> SonarPicture:
 
 
 def _mouth(moment: Moment) -> tuple[FloatArray, bool]:
-    """Truth in the sonar's plane (n, 2): its section, or the ropes turned into it."""
+    """Truth in the sonar's plane (n, 2): its section, or the ropes rotated into it."""
     if SECTION in moment.messages:
         through = read_point_cloud(SECTION, moment.messages[SECTION], ('x', 'y'))
         if len(through):

@@ -12,20 +12,20 @@ PANELS = ('upper', 'side', 'side_upper', 'side_lower', 'lower')
 TITLES = {'side_upper': 'upper side', 'side_lower': 'lower side'}
 FACES = {'wing': '#dfeaf2', 'body': '#f4f1e8', 'codend': '#ece4ee'}
 LABEL_LENGTH = 0.03
-"""Pieces shorter than this part of the net get no words of their own."""
+"""Pieces shorter than this share of the net get no label of their own."""
 
 ROOM = 0.35
-"""Part of the picture's half width that a piece needs for its words."""
+"""Share of the picture's half width that a piece needs for its label."""
 
 Shape = tuple[PieceRecord, list[tuple[float, float]]]
-"""A piece with the corners (stretched widths across, distance behind the foremost wing, m)."""
+"""Piece with its corners (stretched widths across, distance behind the foremost wing, m)."""
 
 
 def net_plan_figure(name: str, plan: NetPlanRecord) -> Figure:
-    """Draw the upper, side and lower panel of a net plan beside each other.
+    """Draw the upper, side and lower panel of a net plan next to each other.
 
-    Lengths and widths are those of stretched netting, which cannot both be had at once: the picture
-    is the plan, not the net.
+    Lengths and widths are those of stretched netting. A net does not have both at once, so the
+    picture shows the plan and not the net.
     """
     panels = [p for p in PANELS if p in ('upper', 'lower') or p in plan.panels]
     figure = Figure(figsize=(4.4 * len(panels), 10.0), layout='constrained')
@@ -64,7 +64,7 @@ def net_plan_figure(name: str, plan: NetPlanRecord) -> Figure:
 
 
 def _shapes(plan: NetPlanRecord, panel: str, ahead: float) -> list[Shape]:
-    """Pieces of a panel with their corners; of a side, the upper wing is on the left."""
+    """Pieces of a panel with their corners; in a side panel the upper wing is on the left."""
     found: list[Shape] = []
     mouth = 0.5 * plan.mouth_width(panel)
     names = ('side', 'side_upper', 'side_lower') if panel == 'side' else (panel,)

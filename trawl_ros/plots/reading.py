@@ -20,7 +20,7 @@ from trawl_ros.records.samples import INSTRUMENTS, SENSORS, Sample
 from trawl_ros.records.truth import SIDES
 
 NOT_DRAWN = ('sonar/bottom', 'vessel/echo_sounder/depth', 'vessel/echo_sounder/school')
-"""Topics with numbers that no figure of a tow shows."""
+"""Topics with numbers that no figure shows."""
 
 Columns = dict[str, float]
 
@@ -126,11 +126,11 @@ class QuantityReader:
         self._doors: dict[str, tuple[int, FloatArray]] = {}
 
     def sample(self, sample: Sample) -> Quantities:
-        """Give the quantities of a sample; it may have none."""
+        """Return the quantities of a sample; it may have none."""
         return Quantities(sample.stamp, 'measured', sample_columns(sample, self._depth_at))
 
     def truth(self, topic: str, message: Any) -> Quantities:
-        """Give the quantities of a message of one of `TRUTH`.
+        """Return the quantities of a message of one of `TRUTH`.
 
         The distance of the doors comes with the second of two messages of the same stamp.
 
@@ -210,7 +210,7 @@ def _series(rows: dict[str, list[tuple[int, float]]], start: int) -> dict[str, S
 
 
 def _continuous(angles: FloatArray) -> FloatArray:
-    """Angles without jumps of a whole turn, whatever is missing between them."""
+    """Angles without jumps of a whole turn, also over gaps."""
     known = np.isfinite(angles)
     unwrapped: FloatArray = angles.copy()
     unwrapped[known] = np.unwrap(angles[known])
@@ -218,8 +218,9 @@ def _continuous(angles: FloatArray) -> FloatArray:
 
 
 def _completed(truth: dict[str, Series]) -> dict[str, Series]:
-    """Truth that says something; where the sonar's own view of the opening is not there, the
-    height at the headrope's centre stands for it.
+    """Truth without series that hold no values.
+
+    If the sonar's own opening height is missing, the height at the headrope's centre replaces it.
     """
     known = {name: series for name, series in truth.items() if np.isfinite(series.values).any()}
     if 'centre_height' in known:

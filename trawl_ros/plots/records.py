@@ -11,7 +11,7 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 
 SCHOOLS = 'schools'
-"""Name of what is drawn of fish."""
+"""Name of the strands of fish schools."""
 
 
 Kind = Literal['truth', 'measured', 'wanted', 'model']
@@ -43,7 +43,7 @@ class Series:
         return float(np.interp(time, times, values, left=np.nan, right=np.nan))
 
     def near(self, time: float, most: float) -> float:
-        """Value of the reading nearest to a time (s), not further than ``most``; else NaN."""
+        """Value of the reading nearest to a time (s), at most ``most`` away; else NaN."""
         known = np.isfinite(self.values)
         away = np.abs(self.times[known] - time)
         if not len(away) or away.min() > most:
@@ -92,7 +92,7 @@ class TowHistory:
         return (stamp - self.start) / SECOND
 
     def best(self, name: str) -> Series | None:
-        """Truth of a quantity, or else its readings."""
+        """Truth of a quantity if the bag holds it, else its readings."""
         return self.truth.get(name) or self.measured.get(name)
 
 

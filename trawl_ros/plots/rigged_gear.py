@@ -1,4 +1,4 @@
-"""Figure of a gear as it is rigged: from above, from the side, and from ahead."""
+"""Figure of a rigged gear from above, from the side, and from ahead."""
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -38,10 +38,10 @@ COLOURS = {
 
 
 def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
-    """Draw boards, bridles, frame ropes and netting; warps are left out.
+    """Draw boards, bridles, frame ropes and netting, without warps.
 
-    ``state`` is a shape that was found; without one the net is drawn as it is built, which is how a
-    solution is first looked for and not how the gear will tow.
+    ``state`` is a steady state. Without one the net is drawn as built: this is the first shape of
+    the search for a steady state, and not the shape in which the gear tows.
     """
     warp = max(WARP, model.gear.block_distance)
     tow = steady_tow(model, OperatingPoint(warp, warp, SPEED))
@@ -84,7 +84,7 @@ def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
 
 
 def _lines(model: GearModel, state: State, tow: Tow) -> list[tuple[str, FloatArray]]:
-    """Pieces (n, 2, 3) of all lines but the warps, astern of the boards, to port, up of them."""
+    """Pieces (n, 2, 3) of all lines except warps: astern of, to port of and above the boards."""
     points = points_of(model, state, tow).positions
     turn = ASTERN
     origin = state.board_positions.mean(axis=0)

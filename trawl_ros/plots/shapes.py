@@ -23,17 +23,17 @@ FROM_READINGS = 'as measured; warps drawn straight, the mouth one bridle behind 
 
 COLOURS = dict(zip(SIDES, (PORT, STARBOARD), strict=True))
 RING = 36
-"""Pieces of a section through a school of fish."""
+"""Number of pieces of a section through a school of fish."""
 
 READING_AWAY_S = 30.0
-"""A reading is good for a picture that is not further away."""
+"""Longest time between a picture and a reading that is used for it."""
 
 
 def gear_shape(moment: Moment, tow: TowHistory, gear: GearRecord) -> GearShape | None:
-    """Return the shape of the gear at a moment; None where the bag holds too little to draw it.
+    """Return the shape of the gear at a moment; None if the bag holds too little to draw it.
 
-    ``gear`` gives what straight lines need: distance of the blocks, size of the doors, length
-    of the bridles.
+    ``gear`` gives the dimensions that straight lines need: distance of the blocks, size of the
+    doors, length of the bridles.
     """
     if GEAR in moment.messages:
         return _from_markers(moment, tow)
@@ -110,7 +110,7 @@ def _rings(marker: Any) -> FloatArray:
 
 
 def _true_door(tow: TowHistory, side: str, time: float) -> tuple[FloatArray, FloatArray] | None:
-    """Position (3,) in ``map`` and axes (3, 3) of a door; its yaw is taken as the ship's."""
+    """Position (3,) in ``map`` and axes (3, 3) of a door; its yaw is assumed to be the ship's."""
     names = [f'{side}_{axis}' for axis in 'xyz']
     if not all(name in tow.truth for name in names) or 'heading' not in tow.truth:
         return None

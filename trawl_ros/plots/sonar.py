@@ -1,4 +1,4 @@
-"""Figure of a trawl sonar's sweep as on its screen, with the opening that was read off."""
+"""Figure of a trawl sonar's sweep as on its screen, with the opening read from it."""
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -10,7 +10,7 @@ from trawl_ros.records.samples import SonarImageSample, SonarScanSample
 from trawl_ros.report import style
 
 PIXELS = 480
-"""Width and height of the picture that a sweep becomes, however many beams and cells it has."""
+"""Width and height of the picture of a sweep, for any number of beams and cells."""
 
 READING, TRUTH = '#4dd2ff', '#f2f2f2'
 BACKGROUND, ECHOES = '#101418', 'inferno'
@@ -33,7 +33,7 @@ def sonar_figure(picture: SonarPicture, name: str) -> Figure:
 
 
 def prepare(axes: Axes, picture: SonarPicture) -> None:
-    """Labels, limits and rings of the range."""
+    """Draw labels, limits and rings of equal range."""
     reach = picture.scan.max_range
     axes.set_facecolor(BACKGROUND)
     axes.set_aspect('equal', adjustable='box')
@@ -80,7 +80,7 @@ def draw_sonar(axes: Axes, picture: SonarPicture) -> list[Artist]:
 
 
 def _dimensions(axes: Axes, height: float, width: float) -> list[Artist]:
-    """Draw height and width as read off, as arrows of that length."""
+    """Draw height and width as arrows of their length."""
     middle = -0.5 * height if np.isfinite(height) else 0.0
     arrows = (
         (height, (0.0, 0.0), (0.0, -height), 'height'),

@@ -1,4 +1,4 @@
-"""Figure of the ship's track: track over ground, headings, and the current."""
+"""Figure of the ship's track: track over ground, headings, and current."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,17 +10,17 @@ from trawl_ros.plots.records import Series, TowHistory
 from trawl_ros.report import style
 
 ARROWS = 9
-"""So many places along the track have arrows of heading and current."""
+"""Number of places along the track with arrows of heading and current."""
 
 AVERAGED_S = 60.0
-"""Over so long the current is averaged: the difference of two noisy speeds."""
+"""Time over which the current is averaged, since it is a difference of two noisy speeds."""
 
 LEAST_CURRENT = 0.03
-"""m/s; less than this is not told from the noise of log and GPS."""
+"""Smallest current, m/s, that can be told from the noise of log and GPS."""
 
 
 def track_figure(tow: TowHistory) -> Figure | None:
-    """Draw the ship's track from above, north up; None where no position is in the bag."""
+    """Draw the ship's track from above, north up; None if the bag holds no position."""
     fixes = fixes_on_map(tow)
     if 'east' not in tow.truth and fixes is None:
         return None
@@ -54,8 +54,10 @@ def track_figure(tow: TowHistory) -> Figure | None:
 
 
 def fixes_on_map(tow: TowHistory) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Times (s), east and north (m) of the fixes; the first valid one lies where truth had it,
-    or at the origin, for a bag does not say where ``map`` is on Earth.
+    """Times (s), east and north (m) of the fixes on the map.
+
+    A bag does not say where ``map`` is on Earth. The first valid fix is therefore placed where
+    truth had it, or at the origin.
     """
     if 'latitude' not in tow.measured:
         return None
@@ -75,9 +77,9 @@ def fixes_on_map(tow: TowHistory) -> tuple[FloatArray, FloatArray, FloatArray] |
 
 
 def current(tow: TowHistory) -> tuple[Series, Series] | None:
-    """Current to the east and to the north (m/s): velocity over ground less that through water.
+    """Current to east and north (m/s): velocity over ground minus that through the water.
 
-    From truth, or else as log, GPS and compass tell it; None where one of them is missing.
+    It is from truth, or else from log, GPS and compass; None if one of them is missing.
     """
     names = ('ground_east', 'ground_north', 'speed_water', 'drift_water', 'heading')
     for quantities in (tow.truth, tow.measured):

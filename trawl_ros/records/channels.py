@@ -11,7 +11,7 @@ from trawl_ros.records.samples import INSTRUMENTS, SENSORS, Sample
 from trawl_ros.records.truth import SIDES
 
 INPUTS = ('port_length', 'starboard_length', 'speed')
-"""Inputs of the gear; measured too, so each has an uncertainty of its own."""
+"""Inputs of the gear; they are measured too, so each has an uncertainty."""
 
 
 def _bare(channel: Channel) -> str:
@@ -31,24 +31,24 @@ CHANNELS: Mapping[str, Channel] = MappingProxyType(_channels())
 """The channels by name."""
 
 SEABED_TOPIC = 'vessel/echo_sounder/depth'
-"""Topic of the water's depth, which no channel has and windows take along."""
+"""Topic of the water depth; no channel reads it, but windows keep it."""
 
 READ_TOPICS = (*dict.fromkeys(row.topic for row in CHANNELS.values()), SEABED_TOPIC)
-"""Topics with readings of any channel, and of the seabed."""
+"""Topics with readings of any channel or of the seabed."""
 
 REQUIRED = tuple(name for name, channel in CHANNELS.items() if channel.required)
 WITNESSES = ('heading', 'yaw_rate', 'ground_east', 'ground_north')
-"""Channels that tell how the ship moves; no part of the fit."""
+"""Channels that describe the ship's motion and are not part of the fit."""
 
 MEASURED = tuple(name for name in CHANNELS if name not in INPUTS and name not in WITNESSES)
 """Channels compared with the model's observables of the same name."""
 
 
 class Reading(NamedTuple):
-    """Reading: one value (SI) of one channel with its stated std, 0 where none is stated.
+    """Reading (SI) of one channel with its stated std, which is 0 if none is stated.
 
-    ``low`` and ``high`` are the sensor's own limits where it has any. A tuple, for a tow has
-    hundreds of thousands.
+    ``low`` and ``high`` are the sensor's own limits, if it has any. It is a tuple because a tow has
+    hundreds of thousands of them.
     """
 
     channel: str
@@ -94,7 +94,7 @@ def channel_values(sample: Sample, pressure_to_depth: Callable[[float], float]) 
 def with_channel_values(
     sample: Sample, values: Mapping[str, float], depth_to_pressure: Callable[[float], float]
 ) -> Sample:
-    """Return a sample with other readings, by channel; the reverse of `channel_values`."""
+    """Return a sample with its readings replaced, by channel; the reverse of `channel_values`."""
     numbers: dict[Field, float] = {}
     for field in SENSORS[sample.topic].fields:
         if field.channel and field.channel.name in values:

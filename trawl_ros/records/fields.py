@@ -1,6 +1,6 @@
-"""Fields of samples, as logs and sentences have them: single numbers of one topic, and back.
+"""Fields of samples for logs and sentences: conversion between samples and single numbers.
 
-Values are SI. A compass angle runs clockwise from north; a depth stands for the pressure there.
+Values are SI. A compass angle is clockwise from north; a depth stands for the pressure there.
 """
 
 import math
@@ -23,7 +23,7 @@ _COMPASS: dict[str, dict[str, str]] = {
     'vessel/heading': {'compass_heading': 'angle'},
     'vessel/fix': {'latitude': 'angle', 'longitude': 'angle'},
 }
-"""Fields of topics whose samples hold other numbers than logs and sentences do."""
+"""Fields of topics whose samples hold other numbers than logs and sentences."""
 
 
 def _fields(row: Sensor[Sample]) -> dict[str, str]:
@@ -33,7 +33,7 @@ def _fields(row: Sensor[Sample]) -> dict[str, str]:
 
 
 FIELDS = {row.name: fields for row in INSTRUMENTS if (fields := _fields(row))}
-"""Fields of each topic that a log or a sentence can give, with their quantities."""
+"""Fields of each topic that a log or a sentence can provide, with their quantities."""
 
 _NOISE = {'vessel/fix': 'length', 'vessel/heading': 'angle'}
 
@@ -69,7 +69,7 @@ class WaterColumn(Record):
 
 @dataclass(frozen=True)
 class Stated:
-    """Statement of a sensor about itself: its noise and, of a distance, its limits; SI."""
+    """Noise that a sensor states, and, for a distance, its limits; SI."""
 
     std: float = 0.0
     min_range: float = 0.0
@@ -77,14 +77,14 @@ class Stated:
 
 
 class StatedTopic(Record):
-    """Noise and limits of a topic as a file states them; limits of distances only."""
+    """Noise and limits of a topic as a file states them; only distances have limits."""
 
     std: Quantity | None = None
     min_range: Quantity | None = None
     max_range: Quantity | None = None
 
     def si(self, topic: str, water: WaterColumn | None) -> Stated:
-        """Give noise and limits in SI units; a depth gauge's noise in metres becomes pressure."""
+        """Return noise and limits in SI units; a depth gauge's noise in metres becomes pressure."""
         std = in_si(self.std)
         in_metres = self.std is not None and UNITS[self.std.unit].quantity == 'length'
         if water and in_metres and STD_QUANTITIES.get(topic) == 'pressure':
@@ -92,7 +92,7 @@ class StatedTopic(Record):
         return Stated(std, in_si(self.min_range), in_si(self.max_range))
 
     def check(self, topic: str, *, has_water: bool = True) -> None:
-        """Refuse what does not fit a topic; noise of pressure may be in metres with a water.
+        """Reject settings that do not suit a topic; with water, pressure noise may be in metres.
 
         Raises
         ------
@@ -172,7 +172,7 @@ def sample_of_fields(
 def fields_of_sample(
     sample: Sample, water: WaterColumn | None = None
 ) -> tuple[str, dict[str, float]] | None:
-    """Take a sample apart into its topic and fields: the reverse of `sample_of_fields`.
+    """Split a sample into its topic and fields: the reverse of `sample_of_fields`.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Partial truth, for instruments that receive a part of it: what is not received is NaN."""
+"""Partial truth, for instruments that receive only part of it; other values are NaN."""
 
 import math
 

@@ -1,10 +1,11 @@
 """Rights of all nodes of a secured graph as files: policy, governance and permissions.
 
-The policy is what SROS 2 reads: the form is that of ``policy.xsd`` (0.2.0) of the package
-``sros2``, which makes keys and permissions from it: ``ros2 security generate_artifacts -k KEYSTORE
--p policy.xml``. Governance and permissions are what the middleware reads (OMG's DDS Security 1.1,
-9.4). SROS 2 makes the same of the policy; written out they can be read before they are signed, and
-signed without SROS 2.
+SROS 2 reads the policy, in the format of ``policy.xsd`` (0.2.0) of the package ``sros2``. It makes
+keys and permissions from it: ``ros2 security generate_artifacts -k KEYSTORE -p policy.xml``.
+
+The middleware reads governance and permissions (OMG's DDS Security 1.1, 9.4). SROS 2 makes
+equivalent files from the policy. Written separately, they can be checked before they are signed,
+and signed without SROS 2.
 """
 
 from xml.etree import ElementTree
@@ -13,7 +14,7 @@ from trawl_ros.records.rights import EVERY_NODE, SET_POINTS, Rights, enclaves
 from trawl_ros.records.topics import NAMESPACE
 
 POLICY_VERSION = '0.2.0'
-"""Version of the form."""
+"""Version of the policy format."""
 
 NOT_BEFORE, NOT_AFTER = '2026-01-01T00:00:00', '2036-01-01T00:00:00'
 """Times between which permissions hold; certificates have an end of their own."""
@@ -22,7 +23,7 @@ SCHEMA = 'http://www.omg.org/spec/DDS-SECURITY/20170901/omg_shared_ca_{}.xsd'
 INSTANCE = '{http://www.w3.org/2001/XMLSchema-instance}noNamespaceSchemaLocation'
 
 GRAPH = 'ros_discovery_info'
-"""Topic of DDS on which each process tells which nodes are in it."""
+"""DDS topic on which each process announces the nodes in it."""
 
 DOMAIN_RULE = {
     'allow_unauthenticated_participants': 'false',
@@ -40,7 +41,7 @@ TOPIC_RULE = {
     'metadata_protection_kind': 'ENCRYPT',
     'data_protection_kind': 'ENCRYPT',
 }
-"""Rules of the domain and of every topic, those that SROS 2 demands."""
+"""Rules of the domain and of every topic, as SROS 2 requires them."""
 
 NAMES = {
     'publish': (('publish', 'rt{}'),),
@@ -48,7 +49,7 @@ NAMES = {
     'reply': (('publish', 'rr{}Reply'), ('subscribe', 'rq{}Request')),
     'request': (('publish', 'rq{}Request'), ('subscribe', 'rr{}Reply')),
 }
-"""Names in DDS of what a right of ROS needs, by its kind."""
+"""DDS names that a ROS right needs, by kind of right."""
 
 
 def policy(namespace: str = NAMESPACE) -> str:
@@ -84,7 +85,7 @@ def policy(namespace: str = NAMESPACE) -> str:
 
 
 def node_of(enclave: str) -> str:
-    """Node that runs in an enclave: it has the enclave's name, but for set points."""
+    """Node that runs in an enclave: that of the enclave's name, except for set points."""
     return 'nmea_in' if enclave == SET_POINTS else enclave
 
 
@@ -121,7 +122,7 @@ def security_files(namespace: str = NAMESPACE, domain: int = 0) -> dict[str, str
 
 
 def governance(domain: int = 0) -> str:
-    """Write what holds for all of a domain: nobody joins without a key, all is encrypted."""
+    """Return the governance file of a domain: nodes need a key, and all traffic is encrypted."""
     root = _root('governance')
     rule = ElementTree.SubElement(
         ElementTree.SubElement(root, 'domain_access_rules'), 'domain_rule'

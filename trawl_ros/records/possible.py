@@ -1,4 +1,4 @@
-"""Bounds of what instruments of a ship can report; a value beyond them is no reading."""
+"""Bounds of what a ship's instruments can report; values beyond them are not readings."""
 
 import math
 from collections.abc import Mapping
@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from trawl_ros.records.samples import SENSORS, Sample
 
 COMPASS_DEG = (-180.0, 360.0)
-"""Loggers write compass angles from 0 to 360 or from -180 to 180."""
+"""Range of compass angles: loggers write 0 to 360 or -180 to 180."""
 
 COMPASS_SLACK_DEG = 1e-9
-"""Rounding of an angle that was converted to radians."""
+"""Allowance for the rounding of an angle that was converted to radians."""
 
 
 def impossible(sample: Sample) -> str | None:
-    """Say what a sample has that cannot be, with the bounds; None where all can be.
+    """Return which value of a sample is impossible, with its bounds; None if all are possible.
 
-    NaN stands for no reading, and passes.
+    NaN means no reading and is accepted.
     """
     # One by one: a norm with an unknown part is unknown, whatever the others are.
     for field in SENSORS[sample.topic].fields:
@@ -26,7 +26,7 @@ def impossible(sample: Sample) -> str | None:
 
 
 def impossible_fields(fields: Mapping[str, float]) -> str | None:
-    """Say that a compass angle (rad) among the fields of a topic cannot be; None where all can."""
+    """Return why a compass angle (rad) of a topic is impossible; None if all are possible."""
     low, high = COMPASS_DEG
     # A sample keeps its angle within one turn, so only the field shows it.
     for name, value in fields.items():

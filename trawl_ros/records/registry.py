@@ -1,4 +1,4 @@
-"""Rows of the registry: a topic, the sensor behind it, the numbers that it reports.
+"""Rows of the registry: a topic, its sensor, and the numbers that the sensor reports.
 
 `trawl_ros.records.topics` and `trawl_ros.records.samples` hold the rows.
 """
@@ -24,7 +24,7 @@ WINCH_NAMES = tuple(f'{side}_warp' for side in SIDES)
 
 
 class StampedSample(Protocol):
-    """Sample of an instrument: a frozen dataclass that knows its topic."""
+    """Sample of an instrument: a frozen dataclass with a topic and a stamp."""
 
     @property
     def stamp(self) -> int:
@@ -138,18 +138,18 @@ class Channel:
         return max(10.0, 4.0 / self.min_rate)
 
     def bias_std(self, mean: float) -> float:
-        """Standard deviation of the calibration at this mean."""
+        """Standard deviation of the calibration error at this mean."""
         return math.hypot(self.bias, self.bias_fraction * mean)
 
     def steady_std(self, mean: float) -> float:
-        """Standard deviation of all that stays wrong through one steady state at this mean."""
+        """Standard deviation of the errors that are constant in one steady state, at this mean."""
         return math.hypot(self.bias_std(mean), self.per_state)
 
     def state_std(self, bias: float, share: float) -> float:
-        """Standard deviation of what changes from one steady state to the next.
+        """Standard deviation of the errors that change from one steady state to the next.
 
-        It is ``share`` of the bias where none was measured. A share of 0 is a tow in which nothing
-        changes with the state.
+        It is ``share`` of the bias if it was not measured. With a share of 0 the errors of a tow do
+        not change with the state.
         """
         return (self.per_state or share * bias) if share else 0.0
 
@@ -199,7 +199,7 @@ class Field:
 
     @property
     def is_pressure(self) -> bool:
-        """True if its channel is the depth at this pressure."""
+        """True if its channel is the depth that belongs to this pressure."""
         return self.quantity == 'pressure'
 
     @property
@@ -245,13 +245,13 @@ class Sensor(Topic, Generic[SampleT_co]):
 
 
 def changed(sample: SampleT, **attributes: object) -> SampleT:
-    """Return a sample with other attributes."""
+    """Return a sample with some attributes replaced."""
     # A dataclass, which a protocol cannot say.
     return replace(sample, **attributes)  # type: ignore[type-var]  # as said above
 
 
 def with_numbers(sample: SampleT, numbers: Mapping[Field, float]) -> SampleT:
-    """Return a sample with other numbers, in the sample's units."""
+    """Return a sample with its numbers replaced, in the sample's units."""
     if not numbers:
         return sample
     single = {one.attribute: value for one, value in numbers.items() if one.index is None}

@@ -1,7 +1,7 @@
-"""Rights of each node: which topics it publishes and hears, which services it answers.
+"""Rights of each node: topics it publishes and subscribes to, and services it offers.
 
-A node has no more than it uses, so that on a secured graph (SROS 2) an instrument cannot command
-and nobody but controllers, set points and an operator writes ``command/*``.
+A node has only the rights it uses. On a secured graph (SROS 2) an instrument therefore cannot
+command: only controllers, set points and an operator write ``command/*``.
 """
 
 from collections.abc import Iterable
@@ -62,7 +62,7 @@ EVERY_NODE = Rights(
         )
     ),
 )
-"""Rights of every node: to log, report, hear the clock and answer for its parameters."""
+"""Rights of every node: to log, to report, to read the clock, and to offer its parameters."""
 
 _SERVICES: dict[str, tuple[str, ...]] = {
     'sim_node': ('pause', 'resume', 'step', 'reset'),
@@ -82,7 +82,7 @@ _SERVICES: dict[str, tuple[str, ...]] = {
     'bag_recorder': (),
     'bag_player': ('~/pause', '~/resume', '~/toggle_paused', '~/play_next'),
 }
-"""Nodes, and the services that each answers."""
+"""Services that each node offers."""
 
 _SOURCES = ('sim_node', 'bag_player')
 """Nodes that wait for consumers."""
@@ -96,7 +96,7 @@ _ALL_HEARD = {'foxglove_node': CONTRACT, 'bag_recorder': CONTRACT}
 
 
 def _rights(node: str) -> Rights:
-    """Take the rights of a node from the rows of the registry."""
+    """Return the rights of a node from the rows of the registry."""
     rows = (*TOPICS.values(), STATIC_TRANSFORMS)
     publishes = [*_ALL_PUBLISHED.get(node, ()), *(row for row in rows if node in row.published_by)]
     hears = [*_ALL_HEARD.get(node, ()), *(row for row in rows if node in row.heard_by)]
@@ -109,11 +109,14 @@ RIGHTS = {node: _rights(node) for node in _SERVICES}
 """Rights by the name of the node."""
 
 OPERATOR = 'operator'
-"""Enclave of the people on the bridge: whoever holds its keys may command."""
+"""Enclave of the bridge: whoever holds its keys may command."""
 
 SET_POINTS = 'set_points'
-"""Enclave of an ``nmea_in`` that passes set points on. Nobody signs sentences: whoever reaches its
-links commands then, so these rights are in an enclave of their own."""
+"""Enclave of an ``nmea_in`` that forwards set points.
+
+Sentences are not signed, so anyone who reaches its links can command. These rights therefore have
+an enclave of their own.
+"""
 
 
 def enclaves() -> dict[str, Rights]:
@@ -124,7 +127,7 @@ def enclaves() -> dict[str, Rights]:
 
 
 def operator_rights() -> Rights:
-    """Return the rights of an operator: all is heard, every command and service may be used."""
+    """Return the rights of an operator: to read every topic and use every command and service."""
     services = [
         service.replace('~', node)
         for node, rights in RIGHTS.items()

@@ -67,8 +67,9 @@ class AttitudeSample:
 
 @dataclass(frozen=True)
 class WarpAngleSample:
-    """Angles of a warp at its towing block: divergence (outward positive, against the ship's
-    course) and declination (down positive), rad.
+    """Angles of a warp at its towing block, rad.
+
+    ``divergence`` is positive outward from the ship's course, ``declination`` positive downward.
     """
 
     stamp: int
@@ -86,8 +87,8 @@ class WarpAngleSample:
 class RangeSample:
     """Range sample, m.
 
-    ``what`` is 'spread', 'opening_height', 'opening_width', 'bottom' (from the headrope down
-    to the seabed), 'depth' (from the keel down to it) or 'school' (from the keel down to fish).
+    ``what`` is 'spread', 'opening_height', 'opening_width', 'bottom' (from the headrope to the
+    seabed), 'depth' (from the keel to the seabed) or 'school' (from the keel to fish).
     """
 
     stamp: int
@@ -141,10 +142,10 @@ class FixSample:
 
 @dataclass(frozen=True)
 class SonarImageSample:
-    """Image sample of one sweep of the trawl sonar, as on its screen, stamped at the first ping.
+    """Image of one sweep of the trawl sonar, as on its screen, stamped at the first ping.
 
-    ``image`` (beams, cells) uint8: row i is a beam, column j the echo from (j + ½) / cells of
-    the range. At which angles and how far, the scan of the same stamp says.
+    ``image`` (beams, cells) is uint8: row i is a beam, and column j the echo from (j + ½) / cells
+    of the range. The scan with the same stamp gives angles and range.
     """
 
     topic: ClassVar = 'sonar/image'
@@ -154,8 +155,10 @@ class SonarImageSample:
 
 @dataclass(frozen=True)
 class SonarScanSample:
-    """First echo per beam of a sweep: ``ranges`` (beams,) m, infinite without one, and
-    ``intensities`` (beams,), 0 to 255.
+    """First echo of each beam of a sweep.
+
+    ``ranges`` (beams,), in m, are infinite without an echo. ``intensities`` (beams,) are from 0 to
+    255.
 
     Beam i looks at ``angle_min`` + i ``angle_increment`` (rad about z of frame ``sonar``, 0 down,
     to port positive); ``sweep_s`` is how long the sweep took.
@@ -215,14 +218,17 @@ RANGES = {
     'depth': 'vessel/echo_sounder/depth',
     'school': 'vessel/echo_sounder/school',
 }
-"""Topic of each distance, by what `RangeSample.what` says it is."""
+"""Topic of each distance, by `RangeSample.what`."""
 
 PICTURES = ('sonar/image', 'sonar/scan', 'sonar/points')
-"""Of the instruments' topics those that take most of the room in a bag."""
+"""Instrument topics that take most of the space in a bag."""
 
 ACOUSTIC_SILENCE_S = 300.0
-"""Longest silence (s) of an acoustic net sensor that works: those of a survey had up to 291 s in a
-haul (public repository afsc-gap-products/trawlmetrics, vessel 94, 2022)."""
+"""Longest silence (s) of a working acoustic net sensor.
+
+Those of a survey were silent up to 291 s in a haul (public repository
+afsc-gap-products/trawlmetrics, vessel 94, 2022).
+"""
 
 _DEGREE = math.pi / 180.0
 _MAX_DEPTH_M = 12_000.0
@@ -231,7 +237,7 @@ _NONE = math.nan
 
 _IDENTIFIERS = ('identification_node', 'discrepancy_node')
 _READERS = (*_IDENTIFIERS, 'nmea_out', 'view_node')
-"""Nodes that hear the readings of which sentences tell and from which boards are identified."""
+"""Nodes that read what sentences report and what boards are identified from."""
 
 
 def _winch(side: str, index: int) -> tuple[Field, ...]:
@@ -343,7 +349,7 @@ def _velocity(
     over: str, frame: str, sentence: str, named: tuple[tuple[str, str, Channel | None, str], ...],
     heard_by: tuple[str, ...], rate_of_turn: Channel | None = None,
 ) -> Sensor[VelocitySample]:  # fmt: skip
-    """Return a row; ``named`` has name, quantity, channel and series of each component."""
+    """Return a row; ``named`` holds name, quantity, channel and series of each component."""
     parts = tuple(
         Field(
             name, 'velocity', index, quantity, low=-_MAX_SPEED_M_S, high=_MAX_SPEED_M_S,
@@ -360,7 +366,7 @@ def _velocity(
 
 
 def _witness(name: str, topic: str, unit: str, limit: float, noise: float) -> Channel:
-    """Return a channel that only tells how the ship moves; it is no part of the fit."""
+    """Return a channel that describes the ship's motion and is not part of the fit."""
     return Channel(
         name, topic, unit, -limit, limit, noise, 0.0, 0.0, 1.0, 4.0, required=False
     )  # fmt: skip

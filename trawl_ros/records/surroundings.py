@@ -13,10 +13,10 @@ PressureAt = Callable[[float], float]
 SURFACE_PRESSURE = 101_325.0
 DECIBAR = 1e4
 DEEPEST = 11_000.0
-"""Depth (m) of the deepest ocean; what TEOS-10 says of water ends there."""
+"""Depth (m) of the deepest ocean, up to which TEOS-10 is valid."""
 
 DEPTH_STEP = 1.0
-"""Sound speed is computed at multiples of this (m), over which it changes by some cm/s."""
+"""Step (m) of the depths at which the sound speed is computed; it changes by some cm/s over it."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Surroundings:
         return _sound_speed(self.salinity, self.temperature(level), round(gauge, 3))
 
     def mean_sound_speed(self, upper: float, lower: float) -> float:
-        """Return the mean speed of sound (m/s) straight from one depth (m) to another."""
+        """Return the mean speed of sound (m/s) on a straight path from one depth (m) to another."""
         levels = np.linspace(upper, lower, 11)
         # Time adds up along the way, so it is the slowness whose mean counts.
         return float(1.0 / np.mean([1.0 / self.sound_speed(level) for level in levels]))

@@ -1,8 +1,8 @@
-"""Registry of the topics: those of truth, estimates and commands, and all of them by name.
+"""Registry of the topics of truth, estimates and commands, and of all topics by name.
 
-Names are relative; a node in namespace ``trawl`` turns ``truth/winch`` into
-``/trawl/truth/winch``. ``/clock`` and ``/diagnostics`` are absolute by ROS convention. Rows of
-instruments are in `trawl_ros.records.samples`.
+Names are relative; a node in namespace ``trawl`` turns ``truth/winch`` into ``/trawl/truth/winch``.
+``/clock`` and ``/diagnostics`` are absolute by ROS convention. Rows of instruments are in
+`trawl_ros.records.samples`.
 """
 
 from trawl_ros.records.registry import DOOR_FRAMES as DOOR_FRAMES
@@ -19,7 +19,7 @@ from trawl_ros.records.samples import RANGES as RANGES
 _SIM = ('sim_node',)
 _SHOWN = ('view_node',)
 _OBSERVERS = tuple(dict.fromkeys(row.published_by[0] for row in INSTRUMENTS if row.errors))
-"""Nodes with sensors that do nothing but measure observables."""
+"""Nodes whose sensors only measure observables."""
 _IDENTIFIED = ('identification_node',)
 
 
@@ -164,7 +164,7 @@ TRANSFORMS = Topic(
 )  # fmt: skip
 
 SYNC = 'sync/progress'
-"""Topic on which consumers tell how far they have come; sources wait for the slowest."""
+"""Topic on which consumers report their progress; sources wait for the slowest one."""
 
 STATIC_TRANSFORMS = Topic(
     '/tf_static', TRANSFORMS.type, '', None, 'Frames of others that stay, for viewers.',
@@ -185,7 +185,7 @@ def absolute(name: str, namespace: str = NAMESPACE) -> str:
 
 
 def find_topic(name: str, namespace: str = NAMESPACE) -> Topic | None:
-    """Find the row for a relative or full topic name; None for a topic of somebody else."""
+    """Return the row of a relative or full topic name; None for a topic of another project."""
     if name in TOPICS:
         return TOPICS[name]
     return TOPICS.get(name.removeprefix(_prefix(namespace)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class TowingLimits:
-    """Limits of what ship and winches can be asked for.
+    """Limits of what ship and winches can be commanded.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class TowingLimits:
 
     @property
     def turn(self) -> float:
-        """Fastest rate of turn, rad/s, with room for rounding."""
+        """Fastest rate of turn, rad/s, with an allowance for rounding."""
         return math.radians(self.turn_deg_s) + 1e-12
 
     def objection(
@@ -55,4 +55,4 @@ class TowingLimits:
 
 
 LIMITS = TowingLimits()
-"""Limits that every door has."""
+"""Limits that apply to files, commands, Python and messages."""

@@ -20,8 +20,8 @@ SIDES = ('port', 'starboard')
 def single(values: ArrayLike) -> FloatArray:
     """Round values to 32-bit floats, the precision of point clouds.
 
-    What is published as a point cloud is no more exact from the beginning, so that instruments
-    in the graph and in one process see the very same.
+    Values published as a point cloud are rounded at once, so that instruments in the graph and in
+    one process see identical values.
     """
     return np.asarray(values, dtype=np.float32).astype(float)
 
@@ -115,7 +115,7 @@ class SchoolTruth:
 
 @dataclass(frozen=True)
 class SeabedTruth:
-    """Truth of the seabed: depth below the mean surface (m, infinite where there is none)."""
+    """Truth of the seabed: depth below the mean surface, m; infinite if there is none."""
 
     under_ship: float = math.inf
     under_headrope: float = math.inf

@@ -1,1 +1,1 @@
-"""Sentences of ships' instruments, read and written by a table in YAML."""
+"""Reading and writing of sentences of ships' instruments, by a table in YAML."""

@@ -1,4 +1,4 @@
-"""Assembly of samples from what several sentences say of one topic."""
+"""Assembly of samples from several sentences on one topic."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
@@ -11,19 +11,19 @@ from trawl_ros.sentences.codec import Spoken
 from trawl_ros.sentences.table import SentenceTable
 
 TOGETHER_NS = SECOND // 2
-"""Readings of one topic that are no further apart than this (ns) make one sample."""
+"""Longest time (ns) between readings of one topic that form one sample."""
 
 MOST_WAITING = 1000
-"""Topics and sources of which a part waits for the rest."""
+"""Largest number of incomplete samples, one per topic and source."""
 
 
 WINCH = 'winch/joint_states'
-"""Topic of which a part is a sample too."""
+"""Topic on which an incomplete sample is used too."""
 
 
 @dataclass
 class _Part:
-    """Fields of a sample that are there so far."""
+    """Fields of a sample received so far."""
 
     stamp: int
     fields: dict[str, float] = field(default_factory=dict)
@@ -94,7 +94,7 @@ class SampleAssembly:
         return [sample for sample in samples if sample is not None]
 
     def flush(self, before: int | None = None) -> list[Sample]:
-        """Give the samples that wait, all or those stamped before a time (ns)."""
+        """Return the incomplete samples, all or those stamped before a time (ns)."""
         keys = [key for key, part in self._parts.items() if before is None or part.stamp < before]
         return [sample for key in keys if (sample := self._sample(key)) is not None]
 
@@ -108,6 +108,6 @@ class SampleAssembly:
 
 
 def samples_of(spoken: Iterable[tuple[Spoken, int]], assembly: SampleAssembly) -> list[Sample]:
-    """Assemble all samples of sentences with their stamps (ns), in their order."""
+    """Yield the samples of sentences with their stamps (ns), in their order."""
     samples = [sample for item, stamp in spoken for sample in assembly.take(item, stamp)]
     return samples + assembly.flush()

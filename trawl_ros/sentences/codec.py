@@ -1,4 +1,4 @@
-"""Codec of single sentences: a frame into readings, readings into a sentence."""
+"""Codec of single sentences: from a frame to readings, and from readings to a sentence."""
 
 import math
 from collections import defaultdict
@@ -17,10 +17,10 @@ from trawl_ros.sentences.framing import Foreign, Frame, Unreadable, framed
 from trawl_ros.sentences.table import SentenceField, SentenceRow, SentenceTable
 
 Readings = Mapping[tuple[str, str], float]
-"""SI values by topic and field; NaN where a sentence says that there is none."""
+"""SI values by topic and field; NaN if a sentence states that there is no reading."""
 
 KEEL_DEPTH = ('vessel/echo_sounder/depth', 'distance')
-"""Reading that is measured from the transducer and given from the keel."""
+"""Reading that the sentence gives from the transducer, and the sample from the keel."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ class SentenceReader:
         """
         found = self._candidates(frame)
         if not found:
-            raise Foreign(f'sentence {_name(frame)}, which no table has')
+            raise Foreign(f'sentence {_name(frame)}, which is in no table')
         best, reason = -1, ''
         for (system, name), address in found:
             row = self.rows[system, name]
@@ -118,7 +118,7 @@ class SentenceReader:
         raise Unreadable(f'sentence {_name(frame)}: {reason}')
 
     def _candidates(self, frame: Frame) -> list[tuple[tuple[str, str], str]]:
-        """Rows of an address, each with the text that stands for it in the body."""
+        """Return the rows of an address, each with the body text that stands for the address."""
         address = frame.body.partition(',')[0]
         if frame.start == '#':
             # Its address has blanks, as have its fields.
@@ -161,7 +161,7 @@ def write_sentence(row: SentenceRow, readings: Readings, stamp: int) -> str | No
 
 
 class _Misfit(ValueError):
-    """Row that does not fit, after so many fields did."""
+    """Row that does not fit, with the number of fields that did."""
 
     def __init__(self, fields: int, reason: str) -> None:
         super().__init__(reason)
@@ -244,7 +244,7 @@ def _keel_depth(text: str, otherwise: float) -> float:
 
 
 def _after(body: str, address: str) -> str | None:
-    """Text behind an address, before which blanks may stand; None if it is another one."""
+    """Return the text behind an address, which may follow blanks; None for another address."""
     bare = body.lstrip()
     return bare[len(address) :] if bare.startswith(f'{address} ') else None
 
@@ -257,7 +257,7 @@ def _sign(text: str, which: str) -> float:
 
 
 def _name(frame: Frame) -> str:
-    """Name of a sentence for its reason, with nothing that differs from one to the next."""
+    """Return the name of a sentence for a reason, without parts that differ between sentences."""
     address = frame.body.partition(',')[0] if frame.start != '#' else frame.body[:5]
     return frame.start + ''.join(sign if sign.isalnum() or sign == ' ' else '?'
                                  for sign in address[:10])  # fmt: skip

@@ -11,11 +11,11 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.sentences.table import SentenceField
 
 YEARS = range(1970, 2038)
-"""Years that can be: stamps of messages count seconds in 32 bits."""
+"""Range of possible years: stamps of messages count seconds in 32 bits."""
 
-NOT_A_NUMBER = 'a field that is no number'
+NOT_A_NUMBER = 'a field that is not a number'
 NOT_A_POSITION = 'a position that is not degrees and minutes'
-NOT_A_TIME = 'a field that is no time'
+NOT_A_TIME = 'a field that is not a time'
 
 _NUMBER = re.compile(r'[+-]?(?:\d{1,15}(?:\.\d{0,15})?|\.\d{1,15})')
 _TIME = re.compile(r'(\d\d):?(\d\d):?(\d\d)(?:\.(\d{1,9}))?')
@@ -24,7 +24,7 @@ _TURN = 2 * math.pi
 
 
 def read_number(text: str, field: SentenceField) -> float:
-    """Read the text of a reading as SI; NaN where it stands for none.
+    """Read a number as SI; NaN if the text means that there is no reading.
 
     Raises
     ------
@@ -51,9 +51,9 @@ def read_number(text: str, field: SentenceField) -> float:
 
 
 def write_number(value: float, field: SentenceField) -> str:
-    """Write a reading (SI) as its field has it, rounded; NaN as what stands for none.
+    """Write a reading (SI) in the format of its field, rounded; NaN as the text for no reading.
 
-    Positions lose their sign, which stands in the field of the hemisphere.
+    Positions are written without sign, which is in the field of the hemisphere.
     """
     if not math.isfinite(value):
         return field.missing[0]
@@ -77,13 +77,13 @@ def write_number(value: float, field: SentenceField) -> str:
 
 @dataclass(frozen=True)
 class SaidTime:
-    """Time that a sentence says: ns since midnight, and the day where it says that."""
+    """Time of a sentence: ns since midnight, and the day if the sentence states it."""
 
     of_day: int
     day: date | None = None
 
     def stamp(self, near: int | None) -> int | None:
-        """Give the stamp (ns): on its day, else on that which brings it nearest to ``near``."""
+        """Return the stamp (ns) on the stated day, else on that nearest to ``near``."""
         if self.day is not None:
             return (self.day - _EPOCH).days * DAY_NS + self.of_day
         if near is None:
@@ -110,7 +110,7 @@ def read_time(text: str) -> int:
 
 
 def read_day(parts: Sequence[tuple[str, str]]) -> date | None:
-    """Read a date from fields, each as (format, text); None where all are empty.
+    """Read a date from fields, each as (format, text); None if all are empty.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def read_day(parts: Sequence[tuple[str, str]]) -> date | None:
                     numbers['y'] += 1900 if numbers['y'] >= 69 else 2000
     year = numbers['y']
     if year not in YEARS:
-        raise ValueError('a year that cannot be')
+        raise ValueError('an impossible year')
     try:
         return date(year, numbers['m'], numbers['d'])
     except ValueError:
@@ -141,7 +141,7 @@ def read_day(parts: Sequence[tuple[str, str]]) -> date | None:
 
 
 def write_time(stamp: int, field: SentenceField) -> str:
-    """Write the time of day or the date of a stamp (ns) as a field has it, cut to its decimals."""
+    """Write the time of day or the date of a stamp (ns) in the format of a field, truncated."""
     form: str = field.time or field.date or ''
     decimals = len(form.partition('.')[2])
     step = SECOND // 10**decimals

@@ -14,12 +14,12 @@ STARTS = '$!@'
 HASH = b'#'
 HEADER = b'UdPbC\x00'
 LONGEST_LINE = 1024
-"""Bytes of a line; a sentence has 82 at most, tag blocks and a recorder's mark some more."""
+"""Longest line, bytes: a sentence has at most 82, tag blocks and a recorder's mark add some."""
 
 LONGEST_FRONT = 256
-"""Characters in front of a sentence that are looked at: a recorder's time, a tag block."""
+"""Characters ahead of a sentence that are searched for a recorder's time or a tag block."""
 
-NO_TEXT = 'a line that is no text'
+NO_TEXT = 'a line that is not text'
 CUT_SHORT = 'a sentence that was cut short by the next one'
 
 _START = re.compile(r'[$!@](?=[A-Z][A-Z0-9]{2,9},)')
@@ -29,11 +29,11 @@ _TAG_TIME = re.compile(r'(?:^|,)c:(\d{1,15})(?:,|$)')
 
 
 class Unreadable(ValueError):
-    """Line that gives no reading; the text is the reason, the same for all such lines."""
+    """Line without a reading; the text is the reason, the same for all lines of that kind."""
 
 
 class Foreign(Unreadable):
-    """Sentence that is whole, and of an address that no table has."""
+    """Complete sentence whose address is in no table."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def parse_line(line: bytes) -> Frame:
 
 
 def _starts(text: str) -> list[re.Match[str]]:
-    """Find where sentences start; ``@`` is a letter of what AIS says."""
+    """Yield where sentences start; inside AIS sentences ``@`` is an ordinary letter."""
     found: list[re.Match[str]] = []
     for start in _START.finditer(text):
         last = found[-1] if found else None
@@ -122,16 +122,16 @@ def _starts(text: str) -> list[re.Match[str]]:
 
 
 def _ended(text: str, sentence: re.Match[str], following: re.Match[str]) -> re.Match[str] | None:
-    """Give the checksum between the start of a sentence and that of the following one."""
+    """Return the checksum between the start of a sentence and that of the following one."""
     return _CHECKSUM.search(text, sentence.end(), following.start())
 
 
 def split_sentences(line: bytes) -> list[bytes]:
-    """Split a line with several sentences into one piece for each.
+    """Split a line with several sentences into one piece per sentence.
 
-    What stands in front of a sentence, as a recorder's time or a tag block, goes with it, and
-    with those behind it that have nothing of their own in front. A sentence that was cut short by
-    the next one ends in the start of that, so that `parse_line` knows it.
+    A recorder's time or a tag block ahead of a sentence belongs to it, and to the following
+    sentences that have none of their own. A sentence that was cut short by the next one ends with
+    the start of that one, so that `parse_line` detects it.
     """
     if sum(map(line.count, (b'$', b'!', b'@'))) < 2:
         return [line]
@@ -154,18 +154,18 @@ def split_sentences(line: bytes) -> list[bytes]:
 
 
 def framed(start: str, body: str, *, checksum: bool) -> str:
-    """Give a sentence as it goes over the line, without its end."""
+    """Return a sentence as sent on the line, without its end."""
     return f'{start}{body}*{calc_checksum(body)}' if checksum else f'{start}{body}'
 
 
 def tag_block(stamp: int) -> str:
-    """Give the tag block that says a UNIX time (ns), in milliseconds of thirteen digits."""
+    """Return the tag block of a UNIX time (ns), in milliseconds of thirteen digits."""
     content = f'c:{stamp // 1_000_000:013d}'
     return f'\\{content}*{calc_checksum(content)}\\'
 
 
 def _unix_ns(digits: str) -> int:
-    """Convert UNIX time in seconds or, with more than ten digits, in milliseconds."""
+    """Convert a UNIX time in seconds or, if it has more than ten digits, in milliseconds."""
     return int(digits) * (1_000_000 if len(digits) > 10 else 1_000_000_000)
 
 
@@ -192,7 +192,7 @@ class SentenceSplitter:
         self._after_cr = False
 
     def feed(self, data: bytes) -> Iterator[bytes]:
-        """Yield what `parse_line` reads of the sentences that are whole after these bytes came."""
+        """Yield the results of `parse_line` for the sentences that these bytes complete."""
         # A text of 16 bits, too, is one of 8 without its NULs.
         data = data.replace(b'\x00', b'')
         if not data:
@@ -213,7 +213,7 @@ class SentenceSplitter:
         yield from self._bounded(rest, ends=False)
 
     def datagram(self, data: bytes) -> Iterator[bytes]:
-        """Yield the sentences of a datagram, whose last one may lack its end."""
+        """Yield the sentences of a datagram; the last one may lack its end."""
         yield from self.feed(data + b'\n')
 
     def end(self) -> Iterator[bytes]:
@@ -222,7 +222,7 @@ class SentenceSplitter:
             yield from self.feed(b'\n')
 
     def _bounded(self, line: bytes, *, ends: bool) -> Iterator[bytes]:
-        """Yield the pieces of a line; of one that has not ended, keep the last."""
+        """Yield the pieces of a line; keep the last piece of a line that has not ended."""
         if not ends and len(line) <= LONGEST_LINE and not self._skipping:
             self._rest = line
             return

@@ -1,4 +1,4 @@
-"""State of live links: their clocks, the source of each topic, and the lines not understood."""
+"""State of live links: their clocks, the source of each topic, and rejected lines."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -9,29 +9,31 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.sentences.codec import Spoken
 
 LEAP_NS = 3600 * SECOND
-"""A time further than this (ns) from the one expected leaps: data may come faster than they were
-measured, and with pauses."""
+"""Deviation (ns) from the expected time above which a time counts as a leap.
+
+Data may arrive faster than they were measured, and with pauses.
+"""
 
 
 SILENT_NS = 15 * SECOND
-"""Silence (ns) after which another source is believed: acoustic sensors speak every few seconds."""
+"""Silence (ns) after which another source is used: acoustic sensors report every few seconds."""
 
 MOST_REASONS = 40
-"""Different reasons that are counted apart; what is sent may name what it likes."""
+"""Largest number of reasons that are counted separately, since senders choose the text."""
 
 SHOWN = 100
-"""Characters of a line that are kept."""
+"""Number of characters of a line that are kept."""
 
 OTHERS = 'for other reasons'
 
 
 class LinkClock:
-    """Clock of a link, as a receiver of the ship's time keeps one.
+    """Clock of a link, which follows the ship's time as a receiver does.
 
-    A ship's clock speaks once a second, and winches ten times. Between two times said this clock
-    goes on with the receiver's own, but never as far as the next: where data come faster than
-    they were measured, readings still keep their order. A time that leaps is believed when three
-    in a row agree.
+    A ship's clock reports once a second, and winches report ten times a second. Between two reports
+    this clock advances with the receiver's own clock, but never reaches the next report. Readings
+    therefore keep their order if data arrive faster than they were measured. A time that leaps is
+    used once three in a row agree.
     """
 
     def __init__(self) -> None:
@@ -41,8 +43,9 @@ class LinkClock:
         self._interval = SECOND
 
     def hear(self, said: int, arrived: int) -> bool:
-        """Take the time (ns) of a sentence that arrived at a monotonic time (ns); false if it
-        leaps, and is not believed yet.
+        """Take the time (ns) of a sentence that arrived at a monotonic time (ns).
+
+        Return False if the time leaps and is not believed yet.
         """
         if not self._leaps.take(said - arrived, None)[0]:
             return False
@@ -52,7 +55,7 @@ class LinkClock:
         return True
 
     def stamp(self, arrived: int) -> int | None:
-        """Give the time (ns) at a monotonic time (ns); None before any was said."""
+        """Return the time (ns) at a monotonic time (ns); None before the first report."""
         if self._said is None:
             return None
         return self._said + min(max(arrived - self._heard_at, 0), self._interval - 1)
@@ -79,11 +82,11 @@ class Source:
     rank: int
 
     def __str__(self) -> str:
-        """Name it in a reason."""
+        """Return its name for a reason."""
         return f'{self.link} {self.system} {self.talker} {self.form}'
 
     def is_instrument_of(self, other: 'Source') -> bool:
-        """True if both speak for one system on one link."""
+        """True if both belong to one system on one link."""
         return (self.link, self.system) == (other.link, other.system)
 
     def is_same(self, other: 'Source') -> bool:
@@ -93,7 +96,7 @@ class Source:
 
 
 class Tellers:
-    """Choice of one source for each topic: the first is believed while it speaks.
+    """Choice of one source for each topic: the first one is used while it reports.
 
     Among the sentences of one system on one link the order of the table decides.
     """
@@ -134,7 +137,7 @@ class Tellers:
 
 
 class Tally:
-    """Tally of lines: how many were understood, and why others were not.
+    """Counts of lines: how many were understood, and why others were rejected.
 
     Attributes
     ----------
@@ -153,7 +156,7 @@ class Tally:
         self.last: tuple[str, str] | None = None
 
     def refuse(self, reason: str, line: bytes, count: int = 1) -> None:
-        """Count lines that were not understood."""
+        """Count rejected lines."""
         known = reason in self.reasons or len(self.reasons) < MOST_REASONS
         self.reasons[reason if known else OTHERS] += count
         if line:
@@ -161,5 +164,5 @@ class Tally:
 
     @property
     def refused(self) -> int:
-        """Number of lines that were not understood."""
+        """Number of rejected lines."""
         return self.reasons.total()

@@ -1,4 +1,4 @@
-"""Samples from a log of sentences: which sentence tells a topic, and when it was said."""
+"""Samples from a log of sentences: the sentence used for each topic, and its time."""
 
 import math
 import re
@@ -35,13 +35,13 @@ from trawl_ros.sentences.log_times import ShipTimes, spread_stamps, stamps_by_ow
 from trawl_ros.sentences.table import SentenceRow, SentenceTable, load_table
 
 SHIP = 'ship'
-"""System of the ship's own sensors, whose sentences say date and time."""
+"""System of the ship's own sensors, whose sentences state date and time."""
 
 BLOCK_BYTES = 1 << 16
-"""Bytes of a log that are read at once."""
+"""Number of bytes of a log that are read at once."""
 
 CLOCK_DIFFERENCE_NS = SECOND // 2
-"""Difference (ns) of two clocks in a log from which on it is noted."""
+"""Difference (ns) of two clocks in a log from which on a note is made."""
 
 UNDATED = 'before the first time with a date'
 
@@ -52,9 +52,9 @@ _AROUND = ' \t\r\n,;|[]()<>"'
 class TopicChoice(StatedTopic):
     """Choice of the ship's sentences for one topic, and the noise and limits of its messages.
 
-    Of ``sentences`` (as GGA) the first one that the log has is used, so that a position that
-    comes in three kinds of sentence gives one message. ``talkers`` (such as ``HE`` for a gyro)
-    says who is listened to; by default it is the one who says most.
+    Of ``sentences`` (such as GGA) the first one in the log is used, so that a position in three
+    kinds of sentence gives one message. ``talkers`` (such as ``HE`` for a gyro) selects the
+    senders; by default it is the one with most sentences.
     """
 
     sentences: Annotated[tuple[str, ...], Field(min_length=1)]
@@ -165,13 +165,13 @@ class SentenceLogReader:
         possible = []
         for sample in samples_of(chosen, assembly):
             if why := impossible(sample):
-                self.left[f'a reading that cannot be: {why}'] += 1
+                self.left[f'an impossible reading: {why}'] += 1
             else:
                 possible.append(sample)
         return possible
 
     def _frames(self) -> Iterator[Frame]:
-        """Yield the sentences that are whole, and count what is not."""
+        """Yield the complete sentences, and count the other lines."""
         splitter = SentenceSplitter()
         with reading_file(self._path, LogError), open_file(self._path, LogError) as stream:
             pieces = chain.from_iterable(map(splitter.feed, self._blocks(stream)))
@@ -211,7 +211,7 @@ class SentenceLogReader:
         if row.is_clock:
             return None
         if row.passed_over:
-            self.left['a sentence that is passed over'] += 1
+            self.left['a sentence that is ignored'] += 1
             return None
         topics = [topic for topic in spoken.topics if self._rank(topic, spoken) is not None]
         if not topics:
@@ -220,7 +220,7 @@ class SentenceLogReader:
         return _Heard(spoken.restricted(topics), stamp, len(self._times.moments) - 1)
 
     def _recorded(self, frame: Frame, recorder: Callable[[str], int]) -> int | None:
-        """Read the recorder's time; None if it cannot be understood, and is counted."""
+        """Read the recorder's time; count it and return None if it is not understood."""
         text = frame.tag_text or frame.front.strip(_AROUND)
         expected = ''
         # A device may have its name before or behind the time.
@@ -238,7 +238,7 @@ class SentenceLogReader:
         return None
 
     def _refuse_undated(self, heard: Sequence[_Heard]) -> None:
-        """Say that there is no date, what was seen instead, and what would help."""
+        """Raise an error that says there is no date, what was found, and what to do."""
         times, options = self._times, self._options
         self.left.update(times.impossible)
         if times.moments or options.recorder or options.start is not None or not self.rows:
@@ -259,7 +259,7 @@ class SentenceLogReader:
         )
 
     def _stamp(self, heard: Sequence[_Heard]) -> list[_Heard]:
-        """Give each sentence its stamp; those before the first date are left out."""
+        """Assign a stamp to each sentence; those before the first date are left out."""
         moments = self._times.moments
         if moments:
             heard_since = [one for one in heard if one.stamp is not None or one.moment >= 0]
@@ -288,7 +288,7 @@ class SentenceLogReader:
         return stamped
 
     def _choose(self, heard: Sequence[_Heard], false: Collection[int]) -> list[tuple[Spoken, int]]:
-        """Select the sentences that tell each topic; ``false`` are moments that cannot be."""
+        """Select the sentences for each topic; ``false`` are the indices of impossible times."""
         told: dict[str, list[_Heard]] = defaultdict(list)
         for one in heard:
             for topic in one.spoken.topics:
@@ -296,7 +296,7 @@ class SentenceLogReader:
                     label = self._label(one.spoken)
                     self.left[f'{label} without a valid reading for {topic}{why}'] += 1
                 elif one.moment in false:
-                    self.left['a reading whose time cannot be'] += 1
+                    self.left['a reading with an impossible time'] += 1
                 else:
                     told[topic].append(one)
         return [
@@ -326,7 +326,7 @@ class SentenceLogReader:
         return [one for one in here if one.spoken.talker in wanted]
 
     def _rank(self, topic: str, spoken: Spoken) -> tuple[int, int] | None:
-        """Order of preference: the ship's sentences by the mapping, then systems; None: unused."""
+        """Return the rank: the ship's sentences by the mapping, then systems; None if unused."""
         if spoken.system != SHIP:
             return self._systems.index(spoken.system), 0
         choice = self._options.choices.get(topic)
@@ -336,13 +336,13 @@ class SentenceLogReader:
         return 0, choice.sentences.index(kind)
 
     def _label(self, spoken: Spoken) -> str:
-        """Name of a sentence's source: its kind (as GGA) if it is the ship's, else its system."""
+        """Return the source of a sentence: its kind (as GGA) for the ship's, else its system."""
         row = self._reader.rows[spoken.system, spoken.name]
         return _kind(row) if spoken.system == SHIP else spoken.system
 
 
 def ship_kinds() -> dict[str, tuple[str, ...]]:
-    """Kinds of the ship's sentences (as GGA) that tell each topic."""
+    """Return the kinds of the ship's sentences (as GGA) for each topic."""
     kinds: dict[str, dict[str, None]] = defaultdict(dict)
     for row in load_table(SHIP).sentences.values():
         for topic in row.topics:
@@ -351,7 +351,7 @@ def ship_kinds() -> dict[str, tuple[str, ...]]:
 
 
 def listed(left_out: Mapping[str, int]) -> str:
-    """List in a line what was left out, and why."""
+    """Return a line that lists what was left out, with the reasons."""
     return '; '.join(f'{count}: {reason}' for reason, count in left_out.items())
 
 
@@ -364,7 +364,7 @@ def _says_date(spoken: Spoken) -> bool:
 
 
 def _no_reading(topic: str, fields: Mapping[str, float]) -> str | None:
-    """Say why fields are no reading of a topic ('' if one is missing); None where they are."""
+    """Return why fields are no reading of a topic ('' if one is missing); None if they are."""
     missing = [math.isnan(value) for value in fields.values()]
     if all(missing) if topic == WINCH else any(missing):
         return ''
@@ -373,7 +373,7 @@ def _no_reading(topic: str, fields: Mapping[str, float]) -> str | None:
 
 
 def _clock_differences(stamped: Sequence[tuple[Spoken, int]]) -> list[str]:
-    """Say by how much times in sentences of gear differ from the stamps that they were given."""
+    """Yield how far the times in sentences of gear differ from their stamps."""
     differences: dict[str, list[int]] = defaultdict(list)
     for spoken, stamp in stamped:
         if spoken.time is not None and spoken.system != SHIP:

@@ -1,8 +1,8 @@
 """Times of the sentences of a log, of which only some state one.
 
-A sentence of the ship with a time has that; the date comes from RMC or ZDA. A sentence without a
-time has the time said last. Where the same sentence comes several times before the next time is
-said, as headings do, its stamps spread evenly over the interval.
+A sentence of the ship with a time has that time; the date comes from RMC or ZDA. A sentence without
+a time has the last stated time. If the same sentence comes several times before the next stated
+time, as headings do, its stamps spread evenly over the interval.
 """
 
 from collections import Counter, defaultdict
@@ -51,7 +51,7 @@ class ShipTimes:
             self.unused[f'{kind} with a time of day and no date'] += 1
             return None
         if not 0 <= stamp < END_NS:
-            self.impossible[f'{kind} of a year that cannot be'] += 1
+            self.impossible[f'{kind} of an impossible year'] += 1
             return None
         self._near = stamp
         if not self.moments or self.moments[-1] != stamp:

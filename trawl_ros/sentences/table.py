@@ -27,7 +27,7 @@ COMMANDS: dict[str, dict[str, str]] = {
     'command/winch': {'port_length': 'length', 'starboard_length': 'length'},
     'command/vessel': {'speed': 'speed', 'turn_to_port': 'rate of turn'},
 }
-"""Fields of command topics that a sentence can give."""
+"""Fields of command topics that a sentence can provide."""
 
 READINGS = FIELDS | COMMANDS
 
@@ -181,7 +181,7 @@ class SentenceRow(Record):
 
     @property
     def is_clock(self) -> bool:
-        """True if it says date and time and nothing else."""
+        """True if it states date and time and nothing else."""
         return not self.topics and not self.passed_over
 
     @model_validator(mode='after')
@@ -211,7 +211,7 @@ class SentenceTable(Record):
     sentences: Annotated[dict[str, SentenceRow], Field(min_length=1, max_length=200)]
 
     def stated(self, topic: str, water: WaterColumn) -> Stated:
-        """Give the noise and limits of a topic, SI; nothing for one of which it says nothing."""
+        """Return the noise and limits of a topic, SI; empty if the table states none."""
         return self.topics.get(topic, StatedTopic()).si(topic, water)
 
     @model_validator(mode='after')

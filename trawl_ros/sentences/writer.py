@@ -1,4 +1,4 @@
-"""Writer of sentences: samples in, the sentences that a system sends of them out."""
+"""Writer of sentences: converts samples into the sentences that a system sends of them."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -47,14 +47,14 @@ class SentenceWriter:
 
     @property
     def topics(self) -> tuple[str, ...]:
-        """Topics of which sentences are written."""
+        """Topics for which sentences are written."""
         return tuple(self._rows)
 
     def write(self, *samples: Sample) -> list[str]:
         """Write the sentences of samples of one instant, without their ends.
 
-        A sentence with readings of two topics leaves those of a topic empty that was sampled at
-        another time. Nothing is written of a sample that no sentence tells.
+        If a sentence holds readings of two topics, those of a topic sampled at another time stay
+        empty. Samples without a sentence are not written.
         """
         readings: dict[tuple[str, str], float] = {}
         rows: dict[str, SentenceRow] = {}
@@ -75,7 +75,7 @@ class SentenceWriter:
         return texts
 
     def write_clock(self, stamp: int) -> list[str]:
-        """Write the sentences that say date and time and nothing else."""
+        """Write the sentences that state date and time and nothing else."""
         texts = (write_sentence(row, {}, stamp) for _, row in self._clocks)
         return [text for text in texts if text is not None]
 

@@ -1,4 +1,4 @@
-"""Bags shown: their messages become records, which are given to a log."""
+"""Display of bags: their messages become records, which go to a log."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,7 +14,7 @@ from trawl_ros.view.reading import TOPICS, TowReader
 from trawl_ros.view.records import Shown
 
 MOST_PICTURES = 2_000
-"""Shapes of the gear and sweeps of the sonar, which are large, that are shown at most."""
+"""Largest number of gear shapes and sonar sweeps shown, since they are large."""
 
 PICTURES = (GEAR, IMAGE, SCAN, 'sonar/points', SECTION)
 
@@ -26,11 +26,11 @@ class Log(Protocol):
         """Log a record."""
 
     def finish(self) -> None:
-        """Pass on all that waits; nothing more comes."""
+        """Pass on all waiting records; no more follow."""
 
 
 class TowBags(BagMessages):
-    """Bags of one tow, on one time line by the stamps that they have; see `BagMessages`."""
+    """Bags of one tow on one time line, by their stamps; see `BagMessages`."""
 
     def __init__(self, paths: Sequence[Path], namespace: str = NAMESPACE) -> None:
         fewer = dict.fromkeys(PICTURES, MOST_PICTURES)
@@ -45,7 +45,7 @@ class TowBags(BagMessages):
         on_progress: OnProgress,
         stopped: Callable[[], bool] = lambda: False,
     ) -> bool:
-        """Give all that is to be shown to a log, in the order of log times.
+        """Return all that is to be shown to a log, in the order of log times.
 
         Parameters
         ----------

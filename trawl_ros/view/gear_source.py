@@ -1,4 +1,4 @@
-"""Shape of the gear as a tow goes on: markers where there are any, else truth, else readings."""
+"""Shape of the gear during a tow: from markers if there are any, else truth, else readings."""
 
 from typing import Any
 
@@ -15,17 +15,19 @@ from trawl_ros.view.records import Gear, Plate
 from trawl_ros.view.ship import ShipFollower
 
 MARKERS_HOLD_S = 10.0
-"""Nothing else draws the gear until markers have been silent for so long, or for thrice the time
-that lies between two of them."""
+"""Silence of markers after which another source draws the gear.
+
+It is also at least three times the interval of markers.
+"""
 
 PERIOD_S = 1.0
-"""Between two shapes made of truth or readings at least."""
+"""Shortest time between two shapes from truth or readings."""
 
 PATIENCE_S = 2.0
-"""At the beginning markers and truth are waited for."""
+"""Time at the beginning during which only markers and truth are used."""
 
 VALUE_HOLDS_S = 30.0
-"""A value is used for so long."""
+"""Time for which a value is used."""
 
 
 class GearFollower:
@@ -52,7 +54,7 @@ class GearFollower:
         self._next: int | None = None
 
     def markers(self, stamp: int, array: Any) -> Gear | None:
-        """Draw markers; None where there is nothing in them."""
+        """Draw markers; None if they are empty."""
         strands: list[Strand] = []
         plates: list[Plate] = []
         for marker in array.markers:
@@ -85,7 +87,7 @@ class GearFollower:
                     latest[name] = quantities.stamp, value
 
     def drawn(self, stamp: int) -> Gear | None:
-        """Draw truth or readings, where it is time to and no markers do."""
+        """Draw truth or readings if it is time and there are no markers."""
         if self._next is None:
             self._next = stamp + round(PATIENCE_S * SECOND)
         # A stamp far back is that of a tow that has begun anew.
@@ -110,7 +112,7 @@ class GearFollower:
         return Moment(0.0, {MOUTH: self._mouth[1]} if held and self._mouth else {})
 
     def _history(self, stamp: int) -> TowHistory:
-        """Return the newest values as series around this moment, which is time 0."""
+        """Return the newest values as series around now, which is time 0."""
         truth, measured = (
             {
                 name: Series(np.zeros(1), np.array([value]))
@@ -122,6 +124,6 @@ class GearFollower:
         return TowHistory('', stamp, 0.0, truth, measured, 0, ())
 
     def _from_ship(self, pieces: FloatArray) -> FloatArray:
-        """Pieces (n, 2, 3) in the ship's axes (astern, to port, up) as such in ``map``."""
+        """Convert pieces (n, 2, 3) in the ship's axes (astern, to port, up) to ``map``."""
         ahead = pieces.reshape(-1, 3) * [-1.0, 1.0, 1.0]
         return self._ship.in_map(ahead).reshape(pieces.shape)

@@ -1,4 +1,4 @@
-"""Layout of the view: where space, sonar, track, histories, estimates and notes are shown."""
+"""Layout of the view: places of space, sonar, track, histories, estimates and notes."""
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
@@ -24,14 +24,14 @@ WHOLE = rr.TimeRange(rr.TimeRangeBoundary.infinite(), rr.TimeRangeBoundary.infin
 
 @dataclass(frozen=True)
 class Camera:
-    """Middle of the gear in the ship's axes (ahead, to port, up) and its length, m."""
+    """Centre of the gear in the ship's axes (ahead, to port, up), and its length, m."""
 
     middle: tuple[float, float, float]
     length: float
 
 
 NEUTRAL = Camera((-250.0, 0.0, -60.0), 600.0)
-"""Before the gear is known: some 500 m of it, astern."""
+"""Camera before the gear is known: some 500 m of gear, astern."""
 
 
 def layout(

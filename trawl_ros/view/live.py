@@ -1,4 +1,4 @@
-"""Live view: records shown by a thread of its own, in bounded memory, whatever the viewer does."""
+"""Live view: a separate thread shows records in bounded memory, whatever the viewer does."""
 
 import time
 from collections import deque
@@ -16,17 +16,17 @@ from trawl_ros.view.viewer.rerun_library import rr
 from trawl_ros.view.viewer.viewer import Kind, Viewer
 
 WAITING_RECORDS = 5000
-"""Records that wait at most; of further ones the oldest are given up, and counted."""
+"""Largest number of waiting records; beyond it the oldest are dropped and counted."""
 
 FLUSH_S = 0.25
 IDLE_S = 0.02
 
 BACK_S = 120.0
 CONFIRM = 20
-"""So many records in a row that are stamped so far back begin a tow anew."""
+"""Number of records in a row with stamps far back that start a new tow."""
 
 LAGGING = (Coefficients, Innovations, Note)
-"""Records of windows, which are thought about while the tow goes on: they begin no tow."""
+"""Records of windows, which are computed later than they are stamped: they start no new tow."""
 
 ENDS_S = 15.0
 
@@ -107,11 +107,11 @@ class LiveView:
 
     @property
     def waiting(self) -> int:
-        """Records that wait."""
+        """Number of waiting records."""
         return len(self._waiting)
 
     def put(self, record: Shown) -> None:
-        """Hand a record over."""
+        """Add a record."""
         with self._lock:
             self._waiting.append(record)
             if len(self._waiting) > WAITING_RECORDS:
@@ -119,7 +119,7 @@ class LiveView:
                 self.lost += 1
 
     def close(self) -> None:
-        """Show what waits, unless the viewer takes nothing, and end it."""
+        """Show the waiting records if the viewer accepts them, and end the viewer."""
         self._stop.set()
         self._thread.join(ENDS_S)
         # The viewer goes first where it hangs: what waits for it then ends.
@@ -131,7 +131,7 @@ class LiveView:
                 self.trouble = self.trouble or str(reason)
 
     def _begin(self) -> None:
-        """Begin a recording: of the first tow, or of one whose stamps went back."""
+        """Start a recording: of the first tow, or of a new one after the stamps went back."""
         if self._log is not None:
             self._log.flush()
         self._tow.close()

@@ -1,4 +1,4 @@
-"""Readings that the model of the gear predicts in the steady windows of a tow."""
+"""Readings that the gear model predicts in the steady windows of a tow."""
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
@@ -16,14 +16,16 @@ from trawl_ros.solver.predict import Prediction
 from trawl_ros.view.records import Note
 
 ALL = 1_000_000
-"""Windows of one steady state: an estimate needs two, a view all of them."""
+"""Options for windows: an estimate needs two windows of a steady state, a view shows all."""
 
 NAMES = {'vertical_opening': 'opening_height'}
-"""Observables by the names of `plots.records.TowHistory`, where they differ."""
+"""Observables by the names of `plots.records.TowHistory`, if they differ."""
 
 
 class ModelFollower:
-    """Steady states of a gear at the warp lengths and speeds at which it was towed.
+    """Steady states of a gear at the warp lengths and speeds of a tow.
+
+    Between steady windows the gear is in motion, and the model predicts nothing.
 
     A tow in motion has none: between steady windows the model says nothing.
 
@@ -42,12 +44,12 @@ class ModelFollower:
         self._drawn = 0
 
     def take(self, sample: Sample) -> Iterator[Quantities | Note]:
-        """Yield what the model says of the windows that a sample completes."""
+        """Yield the predictions for the windows that a sample completes."""
         self._newest = max(self._newest, sample.stamp)
         yield from self._shown(self._finder.feed(sample))
 
     def finish(self) -> Iterator[Quantities | Note]:
-        """Yield what it says of the last windows; no more samples will come."""
+        """Yield the predictions for the last windows; no more samples follow."""
         yield from self._shown(self._finder.finish())
         if not self._drawn:
             reasons = self._finder.rejections.sentences

@@ -62,7 +62,7 @@ def write_picture(
 
 
 def _line(client: ViewerClient) -> Any | None:
-    """Time line of what has arrived in the viewer; None before anything has."""
+    """Time line that has arrived in the viewer; None before anything has."""
     lines = [
         line
         for recording in client.get_state().recordings
@@ -83,7 +83,7 @@ def _stopped(client: ViewerClient, line: Any) -> bool:
 
 
 def _still(viewer: Viewer, look: Callable[[], Seen | None]) -> Seen | None:
-    """Return what is seen once it no longer changes, or when patience ends."""
+    """Return the picture once it no longer changes, or after the time limit."""
     end = time.monotonic() + PATIENCE_S
     last = None
     while True:
@@ -96,7 +96,7 @@ def _still(viewer: Viewer, look: Callable[[], Seen | None]) -> Seen | None:
 
 
 def _seen(look: Callable[[], Seen | None]) -> Seen | None:
-    """Look; None where a viewer that is drawing has no time to answer."""
+    """Return the current picture; None if the viewer is busy drawing."""
     try:
         return look()
     except OSError:

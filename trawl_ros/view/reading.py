@@ -1,4 +1,4 @@
-"""Records to be shown, from the messages of a tow in the order in which they come."""
+"""Conversion of a tow's messages, in order of arrival, into records to show."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -65,15 +65,15 @@ TOPICS = tuple(row.name for row in CONTRACT if 'view_node' in row.heard_by)
 """Relative names of the topics that are shown."""
 
 LAGGING = (IDENTIFICATION, INNOVATION, FINDINGS, TRIAL)
-"""Topics whose stamps are those of windows, which are thought about while the tow goes on."""
+"""Topics stamped with the time of their window, which is computed later."""
 
 COEFFICIENT_STATUS = 'identification: coefficients'
 
 FAR_BACK_S = 120.0
-"""Stamps further back than this are those of a tow that has begun anew."""
+"""Stamps further back than this belong to a new tow."""
 
 SLOW_S = 1.0
-"""Schools and the sonar's section are shown this often, however often truth comes."""
+"""Interval at which schools and the sonar's section are shown, however often truth comes."""
 
 
 class TowReader:
@@ -125,7 +125,7 @@ class TowReader:
         yield from records
 
     def model(self, topic: str, message: Any) -> Iterator[Shown]:
-        """Yield what the model says, where it is asked, of a message that is not shown itself.
+        """Yield the model's predictions, if asked for, from a message that is not shown itself.
 
         Raises
         ------
@@ -136,7 +136,7 @@ class TowReader:
             yield from self._model.take(to_sample(topic, message))
 
     def finish(self) -> Iterator[Shown]:
-        """Yield the records that waited for more messages; no more come."""
+        """Yield the records that waited for more messages; no more follow."""
         if self._model is not None:
             yield from self._model.finish()
 
@@ -303,15 +303,15 @@ def _coefficients_of(stamp: int, statuses: Sequence[Status]) -> Coefficients | N
 
 
 class _NoteBook:
-    """Notes that are new: each status of a topic is told when its sentence or its values change."""
+    """Filter of notes: a topic's status passes if its sentence or its values have changed."""
 
     def __init__(self) -> None:
         self._told: dict[str, str] = {}
 
     def take(self, stamp: int, statuses: Sequence[Status], *, values: bool) -> Iterator[Note]:
-        """Yield a note per status that says something new, with its values where these are wanted.
+        """Yield a note per status with news, with its values if these are wanted.
 
-        A status may repeat what is foreign, so each note is one line of bounded length.
+        A status may repeat text from other programs, so each note is one line of bounded length.
         """
         for status in statuses:
             told = ', '.join(f'{key} {value}' for key, value in status.values.items() if value)
@@ -329,13 +329,13 @@ def _level(status: Status) -> Level:
 
 
 class _SweepJoiner:
-    """Joiner of an image and the scan of the same stamp, whichever comes first."""
+    """Joins an image and the scan of the same stamp, whichever comes first."""
 
     def __init__(self) -> None:
         self._half: SonarImageSample | SonarScanSample | None = None
 
     def take(self, half: SonarImageSample | SonarScanSample) -> Sweep | None:
-        """Return the sweep that a half completes, None if the other is to come.
+        """Return the sweep that this half completes; None if the other half is missing.
 
         Raises
         ------

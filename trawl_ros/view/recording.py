@@ -11,7 +11,7 @@ from trawl_ros.view.viewer.rerun_library import rr
 APPLICATION = 'trawl_ros'
 
 FLUSH_S = 10.0
-"""A viewer that takes nothing for so long is given up."""
+"""Time after which a viewer that accepts nothing is abandoned."""
 
 
 def check_file(path: Path, *, force: bool) -> None:
@@ -31,7 +31,7 @@ def check_file(path: Path, *, force: bool) -> None:
 
 @contextmanager
 def to_file(path: Path, *, force: bool) -> Iterator[rr.RecordingStream]:
-    """Write a recording whole or not at all.
+    """Write a recording completely or not at all.
 
     Raises
     ------

@@ -39,7 +39,7 @@ class Plate:
 
 @dataclass(frozen=True)
 class Gear:
-    """Gear in space, and where its shape comes from, in words."""
+    """Gear in space, and the source of its shape in words."""
 
     stamp: int
     strands: tuple[Strand, ...]
@@ -49,7 +49,7 @@ class Gear:
 
 @dataclass(frozen=True)
 class Schools:
-    """Schools of fish, all that there are."""
+    """All schools of fish."""
 
     stamp: int
     schools: tuple[SchoolTruth, ...]
@@ -90,7 +90,7 @@ class Echoes:
 
 @dataclass(frozen=True)
 class Interval:
-    """Estimate of a coefficient with its 95 % interval; ``determined`` as the estimator says."""
+    """Estimate of a coefficient with its 95 % interval, and whether it is determined."""
 
     value: float
     low: float
@@ -100,7 +100,7 @@ class Interval:
 
 @dataclass(frozen=True)
 class Coefficients:
-    """Estimates of the board coefficients by name after so many windows, and a sentence on them."""
+    """Estimates of the board coefficients by name, number of windows, and a sentence on them."""
 
     stamp: int
     windows: int

@@ -1,4 +1,4 @@
-"""Adapter to Rerun: records become entities of a recording on one time line."""
+"""Adapter to Rerun: converts records into entities of a recording on one time line."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
@@ -28,10 +28,10 @@ from trawl_ros.view.ship import Track
 from trawl_ros.view.viewer.rerun_library import rr
 
 SIMULATED_BEFORE = 15 * 365 * 86_400 * 1_000_000_000
-"""Stamps (ns) of the first years since 1970 are times since the start of a simulation."""
+"""Stamps (ns) below this are times since the start of a simulation, not dates."""
 
 BATCH = 20_000
-"""So many values of all series wait at most until they are passed on together."""
+"""Largest number of waiting values of all series; they are passed on together."""
 
 
 SHIP = (230, 230, 235)
@@ -118,7 +118,7 @@ class RerunLog:
                 self._note(record)
 
     def flush(self) -> None:
-        """Pass on all values that wait."""
+        """Pass on all waiting values."""
         for path, waiting in self._waiting.items():
             self._recording.send_columns(
                 path,
@@ -129,7 +129,7 @@ class RerunLog:
         self._waits = 0
 
     def finish(self) -> None:
-        """Pass on all that waits, and lay out what there is of it."""
+        """Pass on all waiting values, and lay out the views that have data."""
         self.flush()
         self._lay_out(self._ranges.panels)
 
@@ -247,7 +247,7 @@ class RerunLog:
             )
 
     def _placed(self, gear: Gear) -> Camera:
-        """Place the eye abeam to starboard, so that all of the gear is in view."""
+        """Place the camera abeam to starboard, with all of the gear in view."""
         points = np.concatenate([strand.pieces.reshape(-1, 3) for strand in gear.strands])
         low, high = points.min(axis=0), points.max(axis=0)
         pose = self._pose or ShipPose(gear.stamp, np.zeros(3), 0.0)

@@ -22,7 +22,7 @@ RING, TRUE, READ_OFF = (120, 120, 120), (255, 255, 255), (77, 210, 255)
 
 
 class LogAt(Protocol):
-    """Function that logs at a stamp (ns) what an entity shows from then on."""
+    """Function that logs at a stamp (ns) the content of an entity from then on."""
 
     def __call__(self, stamp: int, path: str, shown: object) -> None:
         """Log it."""
@@ -51,14 +51,14 @@ class SonarScreen:
         self._log(sweep.stamp, '/sonar/image', image)
 
     def section(self, section: Section) -> None:
-        """Show the ropes and twine that are there."""
+        """Show the ropes and twine in the sonar's plane."""
         if self._reach is not None:
             points = _on_screen(section.points, self._reach)
             shown = rr.Points2D(points, colors=[TRUE], radii=[-1.5])
             self._log(section.stamp, '/sonar/truth', shown)
 
     def opening(self, readings: Quantities) -> None:
-        """Show height and width as read off the image, from the sonar down and across."""
+        """Show height and width read from the image, from the sonar down and across."""
         ends = {
             'opening_height': ((0.0, 0.0), (1.0, 0.0)),
             'opening_width': ((0.0, 0.5), (0.0, -0.5)),
@@ -73,7 +73,7 @@ class SonarScreen:
                 self._log(readings.stamp, f'/sonar/{name}', shown)
 
     def _rings(self, stamp: int, reach: float) -> None:
-        """Draw circles of equal range, with their radii."""
+        """Draw circles of equal range with their radii."""
         turn = np.linspace(0.0, 2.0 * np.pi, 91)
         circle = np.column_stack([np.cos(turn), np.sin(turn)])
         radii = [reach * k / RINGS for k in range(1, RINGS + 1)]

@@ -1,6 +1,6 @@
 """Series over time: panel, unit, colour and place of each quantity, and ranges of the panels.
 
-Readings far out are not to hide the others, nor noise to look large.
+Far outliers must not hide the other readings, and noise must not look large.
 """
 
 from dataclasses import dataclass, replace
@@ -56,19 +56,19 @@ LEGEND = (
 )
 
 WHITER = 0.4
-"""Of lines over dots: seen on the dark background of a window and on the white one of a page."""
+"""Whitening of lines over dots, visible on a dark window background and on a white page."""
 
 NARROW, BROAD = 1.3, 4.0
 """Widths of lines: dots lie on the broad ones of the model where it is right."""
 
 MOST_KEPT = 2_000
-"""Values of a panel and a kind that are kept at most, from all of the tow."""
+"""Largest number of kept values per panel and kind, spread over the whole tow."""
 
 ORDINARY_PERCENTILES = (10.0, 90.0)
-"""Between these percentiles readings are ordinary, where no truth tells."""
+"""Percentiles between which readings are ordinary, if there is no truth."""
 
 ROOM = 0.3
-"""Part of the height that is left free above and below."""
+"""Share of the height that stays free at the top and at the bottom."""
 
 RGB = tuple[int, int, int]
 
@@ -126,7 +126,7 @@ def path_of(panel: Panel) -> str:
 
 
 def rgb_of(web: str, whiter: float = 0.0) -> RGB:
-    """Colour of the pictures, made so much whiter."""
+    """Colour of the pictures, whitened by a share."""
     red, green, blue = (
         round((1.0 - whiter) * int(web[k : k + 2], 16) + 255 * whiter) for k in (1, 3, 5)
     )
@@ -138,13 +138,13 @@ CURVES = {curve.name: PlacedCurve(panel, curve) for panel in VIEW_PANELS for cur
 
 
 class Unwrapped:
-    """Angles without jumps of a whole turn, from one value to the next."""
+    """Angles without jumps of a whole turn between consecutive values."""
 
     def __init__(self) -> None:
         self._last: dict[str, float] = {}
 
     def take(self, name: str, angle: float) -> float:
-        """Return an angle (rad) within half a turn of the last of that name."""
+        """Return an angle (rad) within half a turn of the last one of that name."""
         if not np.isfinite(angle):
             return angle
         # Of compass degrees the first is from 0 to 360.
@@ -155,7 +155,7 @@ class Unwrapped:
 
 
 class _Thinned:
-    """Values thinned out evenly, with the extremes of all."""
+    """Values thinned out evenly, with the extremes of all values."""
 
     def __init__(self) -> None:
         self.kept: list[float] = []
@@ -189,9 +189,10 @@ class PanelRanges:
         return set(self._values)
 
     def limits(self) -> dict[str, tuple[float, float]]:
-        """Limits by the panel's entity, where not all values are to fill the height.
+        """Axis limits by panel, for panels in which not all values may fill the height.
 
-        That is where readings far out need several times the rest, and where nothing changes.
+        These are panels in which far outliers need several times the range of the rest, and panels
+        in which nothing changes.
         """
         found = {}
         for path, (panel, kinds) in self._values.items():

@@ -1,4 +1,4 @@
-"""Pose of the ship, by truth or by fixes and compass, and her track from above."""
+"""Pose of the ship, from truth or from fixes and compass, and her track from above."""
 
 import math
 
@@ -12,7 +12,7 @@ from trawl_ros.records.samples import FixSample
 from trawl_ros.view.records import Fix, ShipPose
 
 TRUTH_HOLDS_S = 10.0
-"""Readings move the ship when truth has said nothing for so long."""
+"""Silence of truth after which readings move the ship."""
 
 MOST_POINTS = 400
 LEAST_SPACING_M = 3.0
@@ -21,8 +21,8 @@ LEAST_SPACING_M = 3.0
 class ShipFollower:
     """Newest pose of the ship.
 
-    The first fix lies where she was then, or at the origin: readings do not say where ``map`` is on
-    Earth.
+    The first fix is placed where she was then, or at the origin: readings do not say where ``map``
+    is on Earth.
     """
 
     def __init__(self) -> None:
@@ -43,7 +43,7 @@ class ShipFollower:
             self._heading = heading
 
     def fix(self, sample: FixSample) -> tuple[Fix, ShipPose | None] | None:
-        """Take a fix; return its place, and the pose where no truth gives it."""
+        """Take a fix; return its place, and the pose if there is no truth."""
         if not (math.isfinite(sample.latitude) and math.isfinite(sample.longitude)):
             return None
         if self._datum is None:
@@ -60,20 +60,20 @@ class ShipFollower:
         return fix, self.pose
 
     def in_map(self, points: FloatArray) -> FloatArray:
-        """Points (n, 3) in frame ``vessel`` as such in ``map``."""
+        """Convert points (n, 3) in frame ``vessel`` to ``map``."""
         turned: FloatArray = points @ about_z(self.pose.heading).T + self.pose.position
         return turned
 
 
 class Track:
-    """Track thinned out as it becomes long: a day at sea takes no more points than an hour."""
+    """Track that is thinned out as it grows: a day at sea takes no more points than an hour."""
 
     def __init__(self) -> None:
         self._points: list[FloatArray] = []
         self._spacing = LEAST_SPACING_M
 
     def take(self, point: FloatArray) -> FloatArray | None:
-        """Take a place (2,); return the track (n, 2) where it has become longer, else None."""
+        """Take a place (2,); return the track (n, 2) if it has grown, else None."""
         if self._points and np.hypot(*(point - self._points[-1])) < self._spacing:
             return None
         self._points.append(point)

@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 
 from trawl_ros.estimation.from_gear import board_prior
-from trawl_ros.lab.benchmark.bytecode import NO_BYTECODE, bytecode_kept
+from trawl_ros.lab.benchmark.fit import plant_of, trial
 from trawl_ros.lab.benchmark.fit_rivals import CoordinateSearch, Counting, FiniteDifferencePredictor
-from trawl_ros.lab.benchmark.fit_trial import plant_of, trial
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.growth import exponent
 from trawl_ros.lab.benchmark.haul import WATCHED, Ride, error, haul_of
-from trawl_ros.lab.benchmark.shares import shares
-from trawl_ros.lab.running.timing import timed
+from trawl_ros.lab.running.timing import NO_BYTECODE, bytecode_kept, shares, timed
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint

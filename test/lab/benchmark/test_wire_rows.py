@@ -8,7 +8,7 @@ import pytest
 
 from trawl_ros.lab.benchmark.wire import fastest, measure
 from trawl_ros.lab.reference_codes.absent import PeerFailed
-from trawl_ros.lab.reference_codes.history import History
+from trawl_ros.lab.reference_codes.manoeuvre import History
 from trawl_ros.lab.report.measured import at_least
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trawl_ros.lab.reference_codes.history import History, apart
+from trawl_ros.lab.reference_codes.manoeuvre import History, apart
 
 
 @pytest.fixture

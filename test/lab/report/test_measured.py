@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from trawl_ros.lab.benchmark.writing import row_record
+from trawl_ros.lab.commands.benchmark import row_record
 from trawl_ros.lab.report.measured import (
     MeasuredValue,
     at_least,

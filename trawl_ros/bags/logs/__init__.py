@@ -1,1 +1,1 @@
-"""Logs of others made into bags: tables, and NMEA 0183."""
+"""Import of foreign logs as bags: tables, and NMEA 0183."""

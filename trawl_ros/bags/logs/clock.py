@@ -1,4 +1,4 @@
-"""Time columns of logs, and the formats by which they are read."""
+"""Time columns of logs, and their formats."""
 
 import re
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ UNIX: Mapping[str, int] = {
     'microseconds': 1000,
     'nanoseconds': 1,
 }
-"""In place of a format: the column counts these since 1970-01-01 UTC. Nanoseconds in each."""
+"""Formats that count since 1970-01-01 UTC, with the nanoseconds of one unit."""
 
 ELAPSED: Mapping[str, int] = {
     'elapsed milliseconds': 1_000_000,
@@ -28,13 +28,13 @@ ELAPSED: Mapping[str, int] = {
     'elapsed hours': 3600 * SECOND,
     'elapsed hh:mm:ss': SECOND,
 }
-"""In place of a format: the column counts these since ``start``. Nanoseconds in each."""
+"""Formats that count since ``start``, with the nanoseconds of one unit."""
 
 EXCEL_DAYS = 'excel days'
 DAY_OF_YEAR = 'day of year'
 ISO = 'iso'
 WORDS = (*UNIX, *ELAPSED, EXCEL_DAYS, DAY_OF_YEAR, ISO)
-"""All that may stand in place of a strptime format."""
+"""Words that may replace a strptime format."""
 
 _EPOCH = datetime(1970, 1, 1)
 _EXCEL_EPOCH = datetime(1899, 12, 30)
@@ -49,13 +49,12 @@ _DATED = ('%Y', '%y', '%j', '%d', '%x', '%c')
 
 
 class Clock(Record):
-    """Clock of a log: the time columns of a row, joined by one blank, read by a format.
+    """Clock of a log: the time columns of a row, joined by one blank, and their format.
 
-    ``format`` is one of strptime's, or one of `WORDS`. Times without a zone of their own are
-    ``utc_offset_h`` ahead of UTC, or in ``zone``, an IANA name. ``date`` is the day of the first
-    row where columns say the time of day only; after midnight the next one begins. ``start`` is
-    when elapsed time was 0, ``year`` the one a day of the year belongs to. ``add_s`` sets a clock
-    right that was off.
+    ``format`` is a strptime format, or one of `WORDS`. Times without a zone are ``utc_offset_h``
+    ahead of UTC, or in ``zone``, an IANA name. ``date`` is the day of the first row if the columns
+    hold only the time of day; after midnight the next day begins. ``start`` is the time of zero
+    elapsed time, and ``year`` that of a day of the year. ``add_s`` corrects a wrong clock.
     """
 
     columns: Annotated[tuple[str, ...], Field(min_length=1)]
@@ -219,8 +218,8 @@ class ClockReader:
         offsets = {time.replace(tzinfo=self._zone, fold=fold).utcoffset() for fold in (0, 1)}
         if len(offsets) > 1:
             raise ValueError(
-                f'no time in the hour in which clocks of {self._clock.zone} are set; '
-                'utc_offset_h in place of zone would tell'
+                f'a time outside the hour in which clocks of {self._clock.zone} change; use '
+                'utc_offset_h instead of zone'
             )
         (offset,) = offsets
         return local - (offset or timedelta()) // timedelta(microseconds=1) * 1000

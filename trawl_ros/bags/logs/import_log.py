@@ -1,6 +1,6 @@
 """Import of foreign logs as bags, by a mapping from columns or sentences to topics.
 
-Everything is read before anything is written: a log with a mistake in its last line leaves no
+The whole log is read before anything is written, so that an error in its last line does not leave
 half a bag.
 """
 
@@ -118,7 +118,7 @@ def import_log(
 
 
 class _TableReader:
-    """Single pass through a table, with counts of rows, of those left out, and notes."""
+    """Single pass through a table, with counts of rows and of rejected rows, and notes."""
 
     def __init__(self, path: Path, mapping: LogMapping, leave_out: bool) -> None:
         self.rows = 0
@@ -151,7 +151,7 @@ class _TableReader:
                 self.left[bad.reason] += 1
 
     def _look_for_absent(self, row: LogRow) -> set[str]:
-        """Find the optional topics that the log has not all columns of."""
+        """Find the optional topics for which the log lacks a column."""
         found = set()
         # The rows of a long table differ in what they have.
         topics = self._mapping.topics if self._mapping.layout.long is None else {}
@@ -223,7 +223,7 @@ class _TableReader:
             ) from None
 
     def _readings(self, row: LogRow, entry: TopicMapping) -> dict[str, float]:
-        """Give the fields of one topic in SI units; NaN where the row has none."""
+        """Return the fields of one topic in SI units; NaN if the row has none."""
         return {field: self._reading(row, source) for field, source in entry.fields.items()}
 
     def _reading(self, row: LogRow, source: ColumnMapping) -> float:
@@ -248,7 +248,7 @@ class _TableReader:
 def _write_samples(
     path: Path, reader: _TableReader | SentenceLogReader, bag_path: str | Path
 ) -> Imported:
-    """Write the samples of a log as a bag, in the order of time."""
+    """Write the samples of a log as a bag, in time order."""
     new_folder(Path(bag_path), BagError)
     ordered = list(islice(reader.samples(), LOG_READINGS.value + 1))
     if len(ordered) > LOG_READINGS.value:

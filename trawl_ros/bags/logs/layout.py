@@ -19,10 +19,10 @@ from trawl_ros.core.limits import LOG_NULS
 from trawl_ros.core.schema import Record
 
 MAX_LINE = 1_000_000
-"""Characters in a line; more is no table."""
+"""Longest line, characters; a longer one is not part of a table."""
 
 OF_THE_ROW = ('clock', 'only')
-"""Keys whose columns also a long table has as such."""
+"""Keys whose columns are ordinary columns in a long table too."""
 
 BLANKS = 'blanks'
 _NAMED = {'tab': '\t'}
@@ -38,12 +38,12 @@ class Long(Record):
 
 
 class LogLayout(Record):
-    """Layout of a log in its file.
+    """Layout of a log file.
 
-    ``separator`` is one character, ``tab``, or ``blanks`` for any number of them. ``skip_lines``
+    ``separator`` is one character, ``tab``, or ``blanks`` for any number of blanks. ``skip_lines``
     are above the line of column names, ``skip_after_names`` (such as a line of units) below it.
-    ``names`` are the columns' where the file has no such line. Of several columns of one name the
-    log is refused, or the ``first`` is used. Lines that begin with ``comment`` count for nothing.
+    ``names`` are the column names of a file without such a line. If several columns have one name,
+    the log is refused, or the ``first`` is used. Lines that begin with ``comment`` are ignored.
     """
 
     encoding: str = 'utf-8'
@@ -91,11 +91,11 @@ class LogRow:
     cells: Mapping[str, str]
 
     def text(self, column: str) -> str:
-        """Give a cell; in a long table those that have no row are empty."""
+        """Return a cell; columns without a row of a long table are empty."""
         return self.cells.get(column, '')
 
     def bad(self, column: str, expected: str) -> BadRow:
-        """Make the error for a cell that is not what it should be."""
+        """Return the error for a wrong cell."""
         return BadRow(
             f'{self.path}: line {self.line}, column {column!r}: found {self.text(column)!r}, '
             f'expected {expected}',
@@ -106,7 +106,7 @@ class LogRow:
 def read_rows(
     path: Path, layout: LogLayout, needed: Mapping[str, str], keys: Sequence[str]
 ) -> Iterator[LogRow | BadRow]:
-    """Read a log row by row; lines without anything in them count for nothing.
+    """Read a log row by row; empty lines are ignored.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def _joined(
     needed: Mapping[str, str],
     keys: Sequence[str],
 ) -> Iterator[LogRow | BadRow]:
-    """Join the readings of one instant, which follow each other, into one row."""
+    """Join the consecutive readings of one instant into one row."""
     columns: set[str] = set()
     instant: dict[str, str] = {}
     cells: dict[str, str] = {}

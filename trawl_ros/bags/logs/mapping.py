@@ -25,14 +25,14 @@ _TOGETHER = (
     'vessel/velocity_ground',
     'vessel/fix',
 )
-"""Topics that make no sense without all of their fields."""
+"""Topics that need all of their fields."""
 
 
 class ColumnMapping(Record):
     """Column of a reading: (cell x scale + offset) in the unit.
 
     ``hemisphere`` names a column with N, S, E or W for a latitude or longitude. ``missing`` are
-    numbers that stand for no reading in this column, beside those of the whole log.
+    numbers that mean no reading in this column, in addition to those of the whole log.
     """
 
     column: str
@@ -48,12 +48,11 @@ class ColumnMapping(Record):
 
 
 class TopicMapping(StatedTopic):
-    """Mapping of one topic: its readings by field, and the errors its messages state.
+    """Mapping of one topic: its readings by field, and the errors that its messages state.
 
-    An ``optional`` topic is left out where the log has not all of its columns. ``clock`` is the
-    topic's own where its times stand in columns of their own. With ``changes_only`` a reading that
-    is the same as in the row before gives no message: many loggers repeat the last one until the
-    next comes.
+    An ``optional`` topic is left out if the log lacks one of its columns. ``clock`` is the topic's
+    own clock if it has time columns of its own. With ``changes_only`` a reading equal to the one
+    before gives no message: many loggers repeat the last reading until the next one arrives.
     """
 
     fields: Annotated[dict[str, ColumnMapping], Field(min_length=1)]
@@ -63,7 +62,7 @@ class TopicMapping(StatedTopic):
 
     @property
     def columns(self) -> list[str]:
-        """Columns of its readings, and those of hemispheres."""
+        """Columns of its readings, and of their hemispheres."""
         fields = self.fields.values()
         return [field.column for field in fields] + [f.hemisphere for f in fields if f.hemisphere]
 
@@ -71,8 +70,8 @@ class TopicMapping(StatedTopic):
 class LogMapping(Record):
     """Mapping of a whole log.
 
-    ``only`` gives by column the texts of rows that are used; ``missing`` the texts, in lower case,
-    that stand for no reading, where ``-999`` also stands for ``-999.00``.
+    ``only`` gives by column the texts of rows that are used. ``missing`` are the texts, in lower
+    case, that mean no reading; ``-999`` also stands for ``-999.00``.
     """
 
     clock: Clock
@@ -83,11 +82,11 @@ class LogMapping(Record):
     missing: tuple[str, ...] = ('', 'nan', 'na', 'n/a', 'null')
 
     def clocks(self) -> list[Clock]:
-        """Give all clocks, that of the whole log first."""
+        """Return all clocks, first that of the whole log."""
         return [self.clock, *(entry.clock for entry in self.topics.values() if entry.clock)]
 
     def needed(self) -> dict[str, str]:
-        """Name the columns that must be there, each with the key that needs it."""
+        """Return the required columns, each with the key that needs it."""
         wanted: dict[str, str] = {}
         for topic, entry in self.topics.items():
             if not entry.optional:
@@ -138,11 +137,11 @@ class RecorderClock(Clock):
 class SentenceMapping(Record):
     """Mapping of a log of sentences.
 
-    ``time`` says whether stamps are those in the sentences (the date from RMC or ZDA, or
-    ``date`` for the first of them) or those that a recorder put in front. ``keel_depth`` is how
-    far the keel is below the transducer of the echo sounder, where its sentence does not say it.
-    ``topics`` chooses among the ship's sentences. ``systems`` names tables of sentences of fishing
-    gear, packaged ones or files; ``water`` makes pressures of their depths.
+    ``time`` selects the stamps: those in the sentences (the date from RMC or ZDA, or ``date`` for
+    the first of them), or those that a recorder put ahead. ``keel_depth`` is the depth of the keel
+    below the echo sounder's transducer, if its sentence does not state it. ``topics`` selects among
+    the ship's sentences. ``systems`` names tables of sentences of fishing gear, packaged ones or
+    files. ``water`` converts their depths to pressures.
     """
 
     time: Literal['sentences', 'recorder'] = 'sentences'

@@ -1,1 +1,1 @@
-"""Files of bags: MCAP and SQLite, also damaged, with their metadata."""
+"""Files of bags: MCAP and SQLite, also damaged ones, with their metadata."""

@@ -1,4 +1,4 @@
-"""Index of an MCAP file: its summary, its chunks, and their messages in the order of time."""
+"""Index of an MCAP file: its summary, its chunks, and their messages in time order."""
 
 import heapq
 import math
@@ -32,7 +32,7 @@ class Piece:
 class Summary:
     """Summary of a file.
 
-    ``pieces`` is None where it does not say where all messages are, ``channels`` those that have
+    ``pieces`` is None if it does not state where all messages are. ``channels`` are those that have
     messages. ``records`` are all of it; writers may have left any of them out.
     """
 
@@ -44,7 +44,7 @@ class Summary:
 
 
 def is_finished(stream: BinaryIO, size: int) -> bool:
-    """True if a file ends as a finished one does."""
+    """True if a file has the end of a finished one."""
     stream.seek(max(size - len(MCAP0_MAGIC), 0))
     return size >= len(MCAP0_MAGIC) + _TAIL_BYTES and stream.read() == MCAP0_MAGIC
 

@@ -1,6 +1,6 @@
 """Chunk of an MCAP file, decoded with checks of sizes and checksums.
 
-Sizes are checked before memory is taken, and checksums before anything is believed.
+Sizes are checked before memory is allocated, and checksums before any content is used.
 """
 
 import io
@@ -22,7 +22,7 @@ from trawl_ros.core.errors import BagError
 from trawl_ros.core.limits import BAG_MESSAGES, BAG_UNPACKED, CHUNK_BYTES
 
 MAX_CHUNK_BYTES = CHUNK_BYTES.value
-"""Largest chunk (and largest single record) that is read; writers make them of about 1 MB."""
+"""Largest chunk (and largest single record) that is read; writers make chunks of about 1 MB."""
 
 DAMAGE = (
     McapError,
@@ -33,18 +33,18 @@ DAMAGE = (
     zstandard.ZstdError,
     RuntimeError,
 )
-"""All that is raised by the MCAP records and decompressors when bytes are not what they say."""
+"""Exceptions that MCAP records and decompressors raise for invalid bytes."""
 
 Record = Schema | Channel | Message
 
 BYTES_PER_MESSAGE = 8
-"""Of a file, for each message beyond `BAG_MESSAGES`; its entry in an index takes 16."""
+"""Bytes of a file for each message beyond `BAG_MESSAGES`; its entry in an index takes 16."""
 
 RATIO = 200
 """Unpacked bytes per byte of a file, beyond `BAG_UNPACKED`; bags of tows have 8."""
 
 STEP_BYTES = 1 << 20
-"""Bytes that are unpacked at once."""
+"""Number of bytes that are unpacked at once."""
 
 RECORD_START = struct.Struct('<BQ')
 """Opcode and length of a record."""
@@ -87,7 +87,7 @@ class Allowance:
             raise self._beyond(f'{BAG_UNPACKED} and {RATIO} per byte')
 
     def take_records(self, plain: bytes) -> None:
-        """Count the records in bytes that are about to be taken apart.
+        """Count the records in bytes that are about to be parsed.
 
         Raises
         ------
@@ -114,7 +114,7 @@ def parse_records(data: bytes) -> Iterator[object]:
 
 
 def open_chunk(record: bytes, allowed: Allowance) -> list[Record]:
-    """Give schemas, channels and messages of a chunk, in the order in which they stand there.
+    """Yield schemas, channels and messages of a chunk, in their stored order.
 
     Parameters
     ----------
@@ -147,10 +147,10 @@ def open_chunk(record: bytes, allowed: Allowance) -> list[Record]:
 
 
 def _records_in(plain: bytes) -> list[Record]:
-    """Take the unpacked content of a chunk apart.
+    """Parse the unpacked content of a chunk.
 
-    Nearly all of it are whole messages, which are read here; the rest is left to ``mcap``, whose
-    reader of single numbers takes ten times as long.
+    Nearly all of it are complete messages, which are parsed here. The rest is left to ``mcap``,
+    whose parser of single numbers takes ten times as long.
     """
     records: list[Record] = []
     stream = io.BytesIO(plain)
@@ -218,7 +218,7 @@ def _decompress(chunk: Chunk) -> bytes:
 
 
 def read_up_to(reader: zstandard.ZstdDecompressionReader, limit: int) -> bytes:
-    """Read what a reader unpacks, up to a number of bytes."""
+    """Read what a decompressor gives, up to a number of bytes."""
     pieces: list[bytes] = []
     left = limit
     while left and (piece := reader.read(min(left, STEP_BYTES))):

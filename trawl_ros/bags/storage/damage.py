@@ -1,9 +1,9 @@
-"""Damaged MCAP file: what can still be read of one that was cut short or is wrong in places.
+"""Damaged MCAP file: what can be read of one that was cut short or is wrong in places.
 
-Where the chain of records breaks, the next chunk is looked for byte by byte: its header is known
-by lengths that fit each other, and what it holds is believed only if its checksum is right. A
-chunk that stands twice counts once. A topic whose description was lost is told by one that is left
-whole in a damaged part, if metadata and messages confirm it.
+After a break in the chain of records, the next chunk is searched byte by byte. Its header is known
+by lengths that agree with each other, and its content is used only if its checksum is right. A
+chunk that occurs twice counts once. The description of a topic that was lost is replaced by one
+from a damaged part, if metadata and messages confirm it.
 """
 
 import hashlib
@@ -58,16 +58,16 @@ _TAIL_BYTES = 16 << 20
 _SALVAGE_STEP = 1 << 10
 
 _SAMPLES = 16
-"""Messages of a channel by which it is told."""
+"""Number of messages that identify a channel."""
 
 _SAMPLE_BYTES = 1 << 22
-"""Bytes of such messages from which on no more are taken."""
+"""Bytes of such messages after which no more are used."""
 
 
 def scan_records(
     stream: BinaryIO, size: int, report: Callable[[str, int], None]
 ) -> Iterator[tuple[int, int, int]]:
-    """Give opcode, offset and length of each record, up to and with the end of data.
+    """Yield opcode, offset and length of each record, up to and with the end of data.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def scan_records(
     size
         Its length in bytes.
     report
-        Takes a sentence, without the file's name, for each stretch that is stepped over, and how
+        Takes a sentence, without the file's name, for each stretch that is skipped, and how
         many bytes that is.
     """
     offset = len(MCAP0_MAGIC)
@@ -95,18 +95,18 @@ def scan_records(
         if following is None:
             break
         gap = following - offset
-        report(f'damaged at byte {offset}; {gap} bytes were stepped over', gap)
+        report(f'damaged at byte {offset}; {gap} bytes were skipped', gap)
         offset = following
     rest = size - offset
     report(
-        f'cut short or damaged at byte {offset}; what stands before is used'
+        f'cut short or damaged at byte {offset}; the data before it are used'
         + (f', {rest} bytes behind are not' if rest > 0 else ''),
         max(rest, 0),
     )
 
 
 def next_chunk(stream: BinaryIO, offset: int, size: int) -> int | None:
-    """Find the next offset at which bytes are the header of a chunk; None if there is none."""
+    """Find the next offset at which a chunk's header starts; None if there is none."""
     while offset < size:
         stream.seek(offset)
         window = stream.read(_WINDOW)
@@ -172,7 +172,7 @@ def find_copies(stream: BinaryIO, pieces: Iterable[Piece]) -> dict[Piece, Piece]
 
 @dataclass(frozen=True)
 class Recovered:
-    """A channel's topic, the definition of its messages, and what confirms them."""
+    """Topic of a channel, the definition of its messages, and what confirms them."""
 
     topic: str
     definition: Definition
@@ -231,7 +231,7 @@ def _confirmed(
     stated: Mapping[str, Definition] | None,
     types: BagTypes,
 ) -> Recovered | None:
-    """Give what metadata, or the project's table, say of a channel's topic; None if nothing."""
+    """Return what metadata, or the project's topic table, state of a channel's topic, or None."""
     topic = channel.topic
     if stated is not None:
         if topic not in stated:
@@ -271,7 +271,7 @@ def _all_decode(types: BagTypes, definition: Definition, messages: Sequence[byte
 def sample_messages(
     chunks: Iterable[Sequence[object]], numbers: Iterable[int]
 ) -> dict[int, list[bytes]]:
-    """Give some messages of channels, out of all chunks."""
+    """Return some messages of channels, out of all chunks."""
     samples: dict[int, list[bytes]] = {
         number: [] for number in islice(numbers, RECOVERED_CHANNELS.value)
     }
@@ -318,8 +318,8 @@ def read_remains(stream: BinaryIO, damaged: Mapping[int, int], size: int) -> lis
 def find_descriptions(data: bytes, seen: set[bytes]) -> Iterator[Description]:
     """Find schemas and channels among damaged bytes, each record on its own.
 
-    Whoever uses them has to see whether they are right: no checksum says so. ``seen`` are the
-    bytes of those that were found before, and are not given again.
+    No checksum covers them, so the caller must verify them. ``seen`` are the bytes of records found
+    before, which are not returned again.
     """
     for place in _DESCRIPTION.finditer(data):
         length = RECORD_START.size + int.from_bytes(place[2] or place[3], 'little')
@@ -341,7 +341,7 @@ def find_descriptions(data: bytes, seen: set[bytes]) -> Iterator[Description]:
 
 
 def salvage(record: bytes) -> bytes:
-    """Unpack a damaged chunk as far as that goes; what comes out may be wrong anywhere."""
+    """Unpack a damaged chunk as far as possible; any part of the result may be wrong."""
     pieces: list[bytes] = []
     try:
         chunk = next(parse_records(record))

@@ -1,6 +1,6 @@
-"""SQLite file of rosbag2: the storage of Foxy to Humble by default, and of later ones by choice.
+"""SQLite file of rosbag2: the default storage from Foxy to Humble, and optional in later ones.
 
-A database is read as it lies there, without its ``metadata.yaml``: that is compared elsewhere.
+A database is read without its ``metadata.yaml``; another module compares the two.
 """
 
 import sqlite3
@@ -22,14 +22,14 @@ _TABLES = {
     'messages': {'id', 'topic_id', 'timestamp', 'data'},
     'topics': {'id', 'name', 'type', 'serialization_format'},
 }
-"""Columns by table, without which it is no bag."""
+"""Required tables with their columns."""
 
 _DEFINITIONS = ('topic_type', 'encoding', 'encoded_message_definition')
 
 _ALLOWED = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_PRAGMA)
 _FUNCTIONS = ('length', 'count', 'total')
 _STEPS = 10_000
-"""After how many steps of SQLite it is asked whether that is enough."""
+"""Number of SQLite steps between two checks of the limit."""
 
 _READ = 'SELECT topic_id, timestamp, data FROM messages WHERE length(data) <= ? ORDER BY '
 
@@ -82,7 +82,7 @@ class Database:
         return dict(self._definitions)
 
     def types(self) -> set[tuple[str, str]]:
-        """Give all (topic, type) there are."""
+        """Return all pairs (topic, type)."""
         return set(self._topics.values())
 
     def counts(self) -> dict[tuple[str, str], int] | None:
@@ -99,7 +99,7 @@ class Database:
             return None
 
     def messages(self) -> Iterator[RawMessage]:
-        """Give all messages in the order of their times, as far as the database can be read."""
+        """Yield all messages in the order of their times, as far as the database can be read."""
         lost: Counter[str] = Counter()
         read = size = 0
         try:
@@ -211,6 +211,6 @@ class Database:
 
 
 def _authorise(action: int, first: str | None, second: str | None, *_: str | None) -> int:
-    """Authorise reading, and no other function than those that are asked for here."""
+    """Allow reading, and only the functions that are used here."""
     allowed = action in _ALLOWED or (action == sqlite3.SQLITE_FUNCTION and second in _FUNCTIONS)
     return sqlite3.SQLITE_OK if allowed else sqlite3.SQLITE_DENY

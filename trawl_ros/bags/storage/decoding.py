@@ -1,7 +1,7 @@
-"""Decoders by the definitions that a bag carries: they, not ours, fix the layout of its bytes.
+"""Decoders from the definitions in a bag, which define the layout of its bytes.
 
-A database of Foxy to Humble carries none. There the distribution is found by trying: a type that
-changed has another size, and a decoder takes nothing that is too short or too long.
+A database of Foxy to Humble has no definitions. Its distribution is found by trial: a type that
+changed has another size, and a decoder accepts neither too few nor too many bytes.
 """
 
 import math
@@ -21,10 +21,10 @@ from trawl_ros.messages.cdr import DECODING_ERRORS, STORE
 from trawl_ros.messages.cdr import message_definition as known_text
 
 Decoder = Callable[[bytes], Any]
-"""Turns bytes into a message, or raises `MessageError`."""
+"""Decoder of bytes into a message; it raises `MessageError` if they do not match."""
 
 _WITHOUT_DEFINITIONS = (Stores.ROS2_HUMBLE, Stores.ROS2_GALACTIC, Stores.ROS2_FOXY)
-"""Distributions whose databases carry no definitions, newest first."""
+"""Distributions whose databases have no definitions, newest first."""
 
 
 class BagTypes:
@@ -35,7 +35,7 @@ class BagTypes:
         self._fields = 0
 
     def decoder(self, topic: str, definition: Definition) -> Decoder:
-        """Make the decoder of a topic's bytes.
+        """Return the decoder of a topic's bytes.
 
         Raises
         ------
@@ -61,7 +61,7 @@ class BagTypes:
         return decoded
 
     def store(self, topic: str, definition: Definition) -> Typestore:
-        """Give the types of a topic.
+        """Return the types of a topic.
 
         Raises
         ------
@@ -118,7 +118,7 @@ def _most_bytes(name: str, store: Typestore = STORE) -> float:
 
 
 class _Trying:
-    """Decoder by the first distribution whose definition fits, which it keeps."""
+    """Decoder with the first distribution whose definition fits; later calls keep it."""
 
     def __init__(self, name: str, store: Typestore) -> None:
         self._stores = [store]

@@ -1,7 +1,7 @@
-"""Definitions of message types from a foreign bag: parsed, and held against the limits.
+"""Definitions of message types from a foreign bag: parsed, and checked against the limits.
 
-Codecs are made of them as Python code, so nothing goes there but identifiers and sizes that were
-looked at here.
+Codecs are generated from them as Python code, so only identifiers and sizes that were checked here
+go into it.
 """
 
 import re
@@ -85,10 +85,10 @@ def objects_per_byte(types: Typesdict, name: str) -> float:
 
 
 class _IdlParser(IDLParser):
-    """The parser of ``rosbags`` in linear time, with constants of 64 bits.
+    """Parser of ``rosbags`` in linear time, with constants of 64 bits.
 
-    It tries each rule at a place again for each rule above it, and parentheses are nine rules
-    deep; here a rule is tried once per place.
+    The original tries each rule at a place again for each rule above it, and parentheses are nine
+    rules deep. Here a rule is tried once per place.
     """
 
     def __init__(self, text: str) -> None:
@@ -125,7 +125,7 @@ class _Sizes:
         self._known: dict[str, tuple[int, int]] = {}
 
     def check(self, root: str) -> None:
-        """Refuse a type of which no codec can be made."""
+        """Refuse a type for which no codec can be generated."""
         count = sum(len(fields) for _, fields in self._types.values())
         if count > DEFINITION_FIELDS.value:
             raise _beyond(f'{count} fields', DEFINITION_FIELDS)
@@ -144,7 +144,7 @@ class _Sizes:
             raise _beyond(f'messages of {size} bytes', CHUNK_BYTES)
 
     def density(self, root: str) -> float:
-        """Largest number of objects per byte in sequences of objects, in all of a type."""
+        """Largest number of objects per byte in sequences of objects, over all of a type."""
         self._size(root, 0)
         most = 0.0
         for name in self._known:
@@ -162,7 +162,7 @@ class _Sizes:
         return [const[0] for const in consts] + [field for field, _ in fields]
 
     def _own(self, name: str) -> int:
-        """Number of times that code is repeated for the elements of a type's arrays."""
+        """Number of repetitions of code for the elements of a type's arrays."""
         return sum(
             count
             for kind, inner, what, count in map(_taken_apart, self._fields(name))
@@ -200,7 +200,7 @@ class _Sizes:
 
 
 def _taken_apart(field: FieldDesc) -> tuple[Nodetype, Nodetype, Any, int]:
-    """Split a field: its kind, then kind and type of its elements, and their number."""
+    """Split a field: its kind, then kind, type and number of its elements."""
     kind: Any
     detail: Any
     kind, detail = field

@@ -1,7 +1,7 @@
-"""MCAP file opened for reading, also when it was cut short or damaged.
+"""MCAP file opened for reading, also if it was cut short or damaged.
 
-A sound file is read by the index at its end. Where that is missing or wrong, the file is gone
-through record by record as far as it goes.
+A sound file is read by the index at its end. If that is missing or wrong, the file is scanned
+record by record as far as possible.
 """
 
 import struct
@@ -119,11 +119,11 @@ class McapFile:
         return by_topic
 
     def types(self) -> set[tuple[str, str]]:
-        """Give all (topic, type) there are."""
+        """Return all pairs (topic, type)."""
         return {(topic, definition.type) for topic, definition in self._known.all().values()}
 
     def counts(self) -> dict[tuple[str, str], int] | None:
-        """Give the number of messages by (topic, type) as the file states it; None if it does not.
+        """Return the stated number of messages by (topic, type); None if the file states none.
 
         Topics without messages are left out.
         """
@@ -138,10 +138,10 @@ class McapFile:
         return counts
 
     def messages(self) -> Iterator[RawMessage]:
-        """Give all messages in the order of their log times; equal ones as they stand in the file.
+        """Yield all messages in the order of their log times; equal ones in their stored order.
 
-        Memory holds only chunks that overlap. The numbers of messages, by topic, are the order in
-        which they came where this project wrote the file.
+        Memory holds only chunks that overlap. In files of this project the sequence numbers of a
+        topic's messages are their order of arrival.
         """
         lost_channels: Counter[int] = Counter()
         late: Counter[str] = Counter()
@@ -263,7 +263,7 @@ class McapFile:
             self._recover(stream, lost)
 
     def _recover(self, stream: BinaryIO, lost: list[int]) -> None:
-        """Describe channels by what is left of their descriptions in damaged parts."""
+        """Recover channels from remains of their descriptions in damaged parts."""
         allowed = Allowance(self.path, self._size)
         chunks = (self._load(stream, piece, allowed) or [] for piece in self._pieces)
         recovered = recover(
@@ -311,7 +311,7 @@ class McapFile:
             self._damaged[piece.offset] = piece.length
             self._report(
                 f'{self.path}: the chunk at byte {piece.offset} is damaged ({reason}) '
-                'and was stepped over'
+                'and was skipped'
             )
             return None
         return records

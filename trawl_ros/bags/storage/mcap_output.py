@@ -1,7 +1,7 @@
 """MCAP file for writing: chunks with checksums, channels, and an index at its end.
 
-Messages cannot be read without the descriptions of their channels. These stand in a later chunk
-again, so that no two damages, small as they may be, cost a whole file.
+Messages cannot be read without the descriptions of their channels. These are repeated in later
+chunks, so that two small damages cannot make a whole file unreadable.
 """
 
 from pathlib import Path
@@ -17,13 +17,13 @@ COMPRESSIONS = MappingProxyType(
     {'zstd': CompressionType.ZSTD, 'lz4': CompressionType.LZ4, 'none': CompressionType.NONE}
 )
 REPEAT_BYTES = 1 << 16
-"""So far apart descriptions are repeated: in each full chunk, at 1 to 3 % of the file."""
+"""Distance of repeated descriptions, bytes: once in each full chunk, for 1 to 3 % of the file."""
 LIBRARY = 'trawl_ros'
-"""Stands in the file's header in place of a version, which would change the bytes."""
+"""Text in the file's header; a version there would change the bytes."""
 
 
 class McapOutput:
-    """New MCAP file; a reader finds its header there at once.
+    """New MCAP file; its header is written at once.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class McapOutput:
     def write(
         self, topic: str, definition: Definition, data: bytes, log_time: int, publish_time: int
     ) -> None:
-        """Add a message; the first of a topic brings its channel along."""
+        """Add a message; the first one of a topic also writes its channel."""
         self._repeat_descriptions()
         channel, sequence = self._channels.get(topic) or (self._register(topic, definition), 0)
         self._mcap.add_message(channel, log_time, data, publish_time, sequence)
@@ -76,7 +76,7 @@ class McapOutput:
         self.span = min(first, log_time), max(last, log_time)
 
     def flush(self) -> None:
-        """End the chunk in progress and hand everything to the operating system."""
+        """End the current chunk and pass everything to the operating system."""
         self._mcap.flush()  # type: ignore[no-untyped-call]  # of mcap
 
     def finish(self) -> None:
@@ -103,9 +103,9 @@ class McapOutput:
         return number
 
     def _repeat_descriptions(self) -> None:
-        """Begin a chunk with the descriptions in earlier chunks, where that is due.
+        """Start a chunk with the descriptions of earlier chunks, if that is due.
 
-        It is in the chunk after one that described something new, and `REPEAT_BYTES` later.
+        It is due in the chunk after one with a new description, and `REPEAT_BYTES` later.
         """
         if self.size == self._chunk_start:
             return

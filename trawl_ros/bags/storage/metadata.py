@@ -1,6 +1,6 @@
-"""``metadata.yaml``, the file beside a bag's data by which rosbag2 knows what is in it.
+"""``metadata.yaml``, the file next to a bag's data in which rosbag2 describes the bag.
 
-Written as version 8, which all current distributions read; read in any version.
+It is written as version 8, which all current distributions read; all versions are read.
 """
 
 from collections.abc import Mapping, Sequence
@@ -68,13 +68,13 @@ class BagMetadata(_Lenient):
 
     @property
     def span(self) -> tuple[int, int] | None:
-        """First and last log time (ns) as stated; None where they are not."""
+        """First and last log time (ns) as stated; None if not stated."""
         start = self.starting_time.get('nanoseconds_since_epoch')
         lasts = self.duration.get('nanoseconds')
         return None if start is None or lasts is None else (start, start + lasts)
 
     def counts(self) -> dict[tuple[str, str], int]:
-        """Give the number of messages by (topic, type), of those that have any."""
+        """Return the number of messages by (topic, type), without those that have none."""
         counts: dict[tuple[str, str], int] = {}
         for entry in self.topics_with_message_count:
             key = (entry.topic_metadata.name, entry.topic_metadata.type)
@@ -82,7 +82,7 @@ class BagMetadata(_Lenient):
         return {key: count for key, count in counts.items() if count}
 
     def stated(self) -> dict[str, Definition]:
-        """Give what is said of each topic, for files in which it was lost."""
+        """Return the stated properties of each topic, for files that lost them."""
         offered = self.offered()
         entries = [entry.topic_metadata for entry in self.topics_with_message_count]
         return {
@@ -98,7 +98,7 @@ class BagMetadata(_Lenient):
         }
 
     def offered(self) -> dict[str, str]:
-        """Offered QoS by topic, as text; left out where it is not valid."""
+        """Offered QoS by topic, as text; invalid ones are left out."""
         by_topic = {}
         for entry in self.topics_with_message_count:
             topic = entry.topic_metadata
@@ -117,7 +117,7 @@ class FileEntry:
     span: tuple[int, int] | None
 
     def as_metadata(self) -> dict[str, Any]:
-        """Give the entry of ``files``."""
+        """Return the entry of ``files``."""
         return {'path': self.name, **_extent([self])}
 
 
@@ -130,7 +130,7 @@ class TopicEntry:
     count: int
 
     def as_metadata(self) -> dict[str, Any]:
-        """Give the entry of ``topics_with_message_count``."""
+        """Return the entry of ``topics_with_message_count``."""
         return {
             'topic_metadata': {
                 'name': self.name,
@@ -229,7 +229,7 @@ def read_information(path: Path) -> Any:
 
 
 def load_plain(text: bytes | str) -> Any:
-    """Read YAML of a bag by the parser in C: of bounded depth, and bounded in what aliases make.
+    """Read YAML of a bag with the C parser, with limits on depth and on the size of aliases.
 
     Raises
     ------

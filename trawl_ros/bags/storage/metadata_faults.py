@@ -110,7 +110,7 @@ def metadata_faults(
     counts: Mapping[str, int],
     span: tuple[int, int] | None,
 ) -> list[str]:
-    """Hold the metadata of a bag against its content.
+    """Compare the metadata of a bag with its content.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def metadata_faults(
 
 
 def lacking(information: Any) -> list[str]:
-    """Name the keys that rosbag2 would miss, by path.
+    """Return the keys that rosbag2 requires and that are missing, by path.
 
     Parameters
     ----------

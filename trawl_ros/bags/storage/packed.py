@@ -1,7 +1,7 @@
 """Messages and files that rosbag2 compressed (zstd), unpacked as they are read.
 
-Metadata say so, but may be lost. A message of ROS 2 begins with a zero, one of zstd with its magic
-number, so each tells by itself.
+Metadata state the compression, but may be lost. A ROS 2 message begins with a zero byte, and a zstd
+frame with its magic number, so each can be recognised.
 """
 
 import shutil
@@ -30,7 +30,7 @@ from trawl_ros.core.limits import BAG_UNPACKED
 MAGIC = b'\x28\xb5\x2f\xfd'
 
 SPARE_BYTES = 1 << 30
-"""Bytes left free on the disk when a compressed file is unpacked."""
+"""Bytes that stay free on the disk when a compressed file is unpacked."""
 
 _FRAME_START = 64
 """Bytes of a compressed frame that hold its header."""
@@ -52,7 +52,7 @@ class PackedMessages:
         self.lost: Counter[str] = Counter()
 
     def unpack(self, messages: Iterable[RawMessage], allowed: Allowance) -> Iterator[RawMessage]:
-        """Yield messages as they were published; leave out those that are damaged."""
+        """Yield messages as they were published, without damaged ones."""
         for stored in messages:
             if not stored.data.startswith(MAGIC):
                 yield stored
@@ -67,13 +67,13 @@ class PackedMessages:
             yield stored._replace(data=plain)
 
     def report(self, path: Path, report: Callable[[str], None]) -> None:
-        """Report what was lost."""
+        """Report the lost messages."""
         for topic, count in self.lost.items():
             report(f'{path}: {count} compressed messages on {topic} are damaged')
 
 
 class Unpacked:
-    """Files that rosbag2 compressed as a whole, unpacked into a folder that goes with this."""
+    """Files that rosbag2 compressed as a whole, unpacked into a temporary folder."""
 
     def __init__(self, packed: list[Path]) -> None:
         self.packed = packed
@@ -136,7 +136,7 @@ def inflate_file(packed: BinaryIO, plain: BinaryIO, limit: int) -> None:
 
 
 def _check_size(start: bytes, size: int) -> None:
-    """Compare with the size in the frame; its reader takes one that is cut short for the end."""
+    """Compare with the size in the frame; its reader accepts a frame that was cut short."""
     stated = zstandard.get_frame_parameters(start).content_size
     if stated != zstandard.CONTENTSIZE_UNKNOWN and size < stated:
         raise Damaged(f'it should become {stated} bytes and becomes {size}')

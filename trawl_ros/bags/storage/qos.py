@@ -1,4 +1,4 @@
-"""Offered quality of service (QoS), as bags carry it from one graph to the next.
+"""Offered quality of service (QoS), as bags store it.
 
 Records and parser are those of ``rosbags``, which knows both forms: up to version 8 a list in a
 string, with numbers, and from version 9 on a plain list, with words.
@@ -21,10 +21,10 @@ from rosbags.interfaces import (
 from trawl_ros.core.errors import BagError
 
 FOREVER = QosTime(9223372036, 854775807)
-"""Without a limit, as rosbag2 writes it (``RMW_DURATION_INFINITE``)."""
+"""Duration without limit, as rosbag2 writes it (``RMW_DURATION_INFINITE``)."""
 
 MAX_TEXT = 1 << 16
-"""Characters of profiles that are parsed; a hundred publishers need less."""
+"""Longest text of profiles that is parsed, characters; a hundred publishers need less."""
 
 _ONE_LINE = 1 << 20
 _Dumper: Any = getattr(yaml, 'CSafeDumper', yaml.SafeDumper)
@@ -98,7 +98,7 @@ def parse_profiles(topic: str, offered: Any) -> tuple[Qos, ...]:
 
 @lru_cache(maxsize=64)
 def _read(text: str) -> tuple[Qos, ...]:
-    """Read profiles from text: slowly, and that of most topics is the same."""
+    """Read profiles from text; cached, since parsing is slow and most topics are equal."""
     from rosbags.rosbag2.metadata import parse_qos
 
     return tuple(parse_qos(text))

@@ -11,8 +11,20 @@ from trawl_ros.messages.cdr import STORE, message_definition, type_hash
 
 
 class RawMessage(NamedTuple):
-    """Raw message of a bag: full topic name, type, times in ns, CDR bytes, channel, and number of
-    arrival (0 where it is not known).
+    """Raw message of a bag.
+
+    Attributes
+    ----------
+    topic, type
+        Full topic name and message type.
+    log_time, publish_time
+        Times of recording and of publication, ns.
+    data
+        The message in CDR.
+    channel
+        Number of the channel.
+    sequence
+        Number of arrival, 0 if unknown.
     """
 
     topic: str
@@ -41,7 +53,7 @@ class Definition:
 
 
 Description = Schema | Channel
-"""Record of an MCAP file without which messages cannot be read."""
+"""Record of an MCAP file that is needed to read messages."""
 
 
 def describe(type_name: str, qos: str) -> Definition:
@@ -65,7 +77,7 @@ def describe(type_name: str, qos: str) -> Definition:
 
 
 class Descriptions:
-    """Descriptions of channels by their numbers; of two that differ the first one counts."""
+    """Descriptions of channels by their numbers; if two differ, the first one counts."""
 
     def __init__(self) -> None:
         self._schemas: dict[int, Schema] = {}
@@ -83,11 +95,11 @@ class Descriptions:
         self._made.clear()
 
     def add(self, number: int, topic: str, definition: Definition) -> None:
-        """Settle what a channel is of which the file does not say it."""
+        """Set the description of a channel that the file does not describe."""
         self._added[number] = topic, definition
 
     def find(self, number: int) -> tuple[str, Definition] | None:
-        """Give topic and definition of a channel's messages; None if nothing describes it."""
+        """Return topic and definition of a channel's messages; None if nothing describes it."""
         if number in self._added:
             return self._added[number]
         channel = self._channels.get(number)
@@ -97,16 +109,16 @@ class Descriptions:
         return self._made.get(number)
 
     def lacking(self, numbers: Collection[int]) -> list[int]:
-        """Return those channels that are not described, or whose type is not."""
+        """Return the channels that are not described, or whose type is not."""
         return [number for number in sorted(numbers) if not self._describes(number)]
 
     def all(self) -> dict[int, tuple[str, Definition]]:
-        """Give topic and definition of all channels by their numbers."""
+        """Return topic and definition of all channels by their numbers."""
         numbers = dict.fromkeys([*self._channels, *self._added])
         return {number: pair for number in numbers if (pair := self.find(number))}
 
     def records(self) -> list[Description]:
-        """Give all schemas and channels that were learnt."""
+        """Return all schemas and channels that were learnt."""
         return [*self._schemas.values(), *self._channels.values()]
 
     def _describes(self, number: int) -> bool:

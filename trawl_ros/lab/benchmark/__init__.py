@@ -1,1 +1,1 @@
-"""The benchmark: speed, beside other tools."""
+"""The benchmark: speed, compared with other codes."""

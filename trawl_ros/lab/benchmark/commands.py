@@ -1,4 +1,4 @@
-"""Processor time of the commands from recorded bags to a result."""
+"""CPU time of the commands from recorded bags to a result."""
 
 import json
 import math
@@ -22,11 +22,9 @@ from trawl_ros.estimation.bag_windows import BagTask, read_tow
 from trawl_ros.estimation.fit.nuisance import eliminate_nuisance
 from trawl_ros.estimation.tows import numbered
 from trawl_ros.gear.load import load_gear
-from trawl_ros.lab.benchmark.bytecode import bytecode_kept
-from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
-from trawl_ros.lab.running.timing import timed
+from trawl_ros.lab.running.timing import Part, bytecode_kept, shares, timed
 from trawl_ros.records.topics import NAMESPACE
 from trawl_ros.solver.effect_sensitivity import by_effects
 from trawl_ros.solver.equilibrium import find_equilibrium
@@ -36,7 +34,7 @@ from trawl_ros.solver.slow_mode import slow_mode
 OVER_REAL_TIME, DIAGNOSIS_S = 200.0, 12.0
 
 TOWS = ('hidden_baseline', 'hidden_tow_1', 'hidden_tow_2', 'hidden_tow_3')
-"""Scenarios that are towed for the diagnosis, each with two seeds."""
+"""Scenarios towed for the diagnosis, each with two seeds."""
 
 PARTS: dict[str, Part] = {
     'steady states': find_equilibrium,
@@ -45,7 +43,7 @@ PARTS: dict[str, Part] = {
     'their slowest motions': slow_mode,
     'errors of instruments and tows': eliminate_nuisance,
 }
-"""Functions that a diagnosis is made of."""
+"""Main functions of a diagnosis."""
 
 LOADED = (
     'trawl_ros.cli.diagnose',
@@ -59,11 +57,11 @@ LOADED = (
 SUCCESS = frozenset({0})
 COARSE = 12
 SHORT_S = 540.0
-"""Length of the tow of the small version."""
+"""Duration of the tow of the small version."""
 
 
 def measure(small: bool) -> Findings:
-    """Run the commands, each in a process of its own."""
+    """Run each command in a separate process."""
     with tempfile.TemporaryDirectory() as name, bytecode_kept(*LOADED):
         folder = Path(name)
         rows = [_identified(folder, small=small)]
@@ -137,7 +135,7 @@ def _of_diagnosis(bags: Sequence[Path], baselines: int) -> str:
 
 
 def command_s(*words: str, codes: Set[int] = SUCCESS) -> float:
-    """Processor time (s) of a command of ``trawl`` with all its processes.
+    """CPU time (s) of a command of ``trawl`` with all its processes.
 
     ``codes`` are exit codes of a command that has done its work.
 
@@ -159,13 +157,13 @@ def _last(lines: str) -> str:
 
 
 def _children_s() -> float:
-    """Processor time (s) of all child processes that have ended so far, and of theirs."""
+    """CPU time (s) of all ended child processes and of their children."""
     times = psutil.Process().cpu_times()
     return float(times.children_user + times.children_system)
 
 
 def _length_s(bag: Path) -> float:
-    """Length (s) of a bag by its metadata."""
+    """Duration (s) of a bag by its metadata."""
     metadata = yaml.safe_load((bag / 'metadata.yaml').read_text(encoding='utf-8'))
     return 1e-9 * float(metadata['rosbag2_bagfile_information']['duration']['nanoseconds'])
 

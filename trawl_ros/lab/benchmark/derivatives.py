@@ -1,4 +1,4 @@
-"""Time of a step with the derivatives of the motion by twenty parameters, beside one without."""
+"""Time of a step with and without the derivatives of the motion by twenty parameters."""
 
 import gc
 import tracemalloc
@@ -9,10 +9,9 @@ import numpy as np
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.haul import FINEST_S, HaulManoeuvre, haul_of
-from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.report.measured import MeasuredValue, TargetRange, at_most
 from trawl_ros.lab.report.page import Findings
-from trawl_ros.lab.running.timing import timed
+from trawl_ros.lab.running.timing import Part, shares, timed
 from trawl_ros.model.assembly import linearised
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.linear.factor import Factor, factorised
@@ -22,7 +21,7 @@ from trawl_ros.solver.motion.partials import effect_pushes, pushes
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 
 STEP_S = 0.2
-"""Step that `sim_node` and `trawl tow` take."""
+"""Step of `sim_node` and `trawl tow`."""
 
 STEP_MS = 6.0
 
@@ -42,14 +41,14 @@ PARTS: dict[str, Part] = {
     'forces by effects': effect_pushes,
     'boundary and its derivatives': course_point,
 }
-"""Functions that a step with derivatives is made of."""
+"""Main functions of a step with derivatives."""
 
 NONE = MotionParameters(coefficients=False)
 
 
 @dataclass(frozen=True)
 class RecordedInputs:
-    """Inputs of a manoeuvre at any of its times."""
+    """Inputs of a manoeuvre as a function of time."""
 
     haul: HaulManoeuvre
 
@@ -63,7 +62,7 @@ class RecordedInputs:
 
 
 def measure(small: bool) -> Findings:
-    """Tow with and without derivatives, in turn, several times."""
+    """Tow with and without derivatives, alternately, several times."""
     steps, repeats = (10, 2) if small else (300, 5)
     model = build_model(default_gear(small=small))
     inputs = RecordedInputs(haul_of(model, steps * STEP_S))
@@ -97,7 +96,7 @@ def measure(small: bool) -> Findings:
 
 
 def _step_s(tow: DifferentiatedTow) -> float:
-    """CPU time (s) of a step, with what is observed after it where it has derivatives."""
+    """CPU time (s) of a step; with derivatives, the observation after it is included."""
 
     def step() -> None:
         tow.advance(STEP_S)
@@ -108,7 +107,7 @@ def _step_s(tow: DifferentiatedTow) -> float:
 
 
 def _memory(tow: DifferentiatedTow, steps: int) -> tuple[float, str, TargetRange, str]:
-    """Memory (as a ratio) that a tow holds; with unit, target and note of its row."""
+    """Memory (as a ratio) of a tow, with unit, target and note of its row."""
     tracemalloc.start()
     try:
         held = []

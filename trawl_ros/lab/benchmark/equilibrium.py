@@ -1,4 +1,4 @@
-"""Steady states of the full gear, warm and cold, beside tools that solve less."""
+"""Steady states of the full gear, warm and cold, compared with codes that solve less."""
 
 import math
 from collections.abc import Callable
@@ -7,13 +7,12 @@ from itertools import cycle
 from statistics import median
 
 from trawl_ros.lab.benchmark.gears import default_gear
-from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed, peer
 from trawl_ros.lab.reference_codes.moorpy_wire import MoorPyWire
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
-from trawl_ros.lab.running.timing import median_s, timed
+from trawl_ros.lab.running.timing import Part, median_s, shares, timed
 from trawl_ros.model.assembly import forces, linearised
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.solver.equilibrium import Equilibrium, SteadyState, find_equilibrium, steady_state
@@ -27,7 +26,7 @@ COLD_S, STABLE_S = 0.2, 0.25
 OVER_TRAWLKIT = 50.0
 
 CHANGES = ((20.0, 0.0), (-20.0, 0.0), (0.0, 0.05), (0.0, -0.05), (100.0, 0.0), (-100.0, 0.0))
-"""Of warp length (m) and speed (m/s), from 500 m and 2.1 m/s."""
+"""Changes of warp length (m) and speed (m/s), from 500 m and 2.1 m/s."""
 
 COLD_POINTS = ((300.0, 2.1), (500.0, 1.9), (500.0, 2.1), (700.0, 2.1), (900.0, 2.1))
 
@@ -39,7 +38,7 @@ PARTS: dict[str, Part] = {
     'forces': forces,
     'solutions': Factor.solve,
 }
-"""Functions that a search for a root is made of."""
+"""Main functions of a search for a steady state."""
 
 TRAWLKIT_COARSE = 2
 """Divisions per panel of the small version; the default is trawlkit's own."""
@@ -50,7 +49,7 @@ def _point(length: float, speed: float) -> OperatingPoint:
 
 
 def measure(small: bool) -> Findings:
-    """Time steady states near a known one, from nothing, and with the check of stability."""
+    """Time steady states from a known one, from a cold start, and with the check of stability."""
     model = build_model(default_gear(small=small))
     repeats = 1 if small else 5
     known = find_equilibrium(model, _point(500.0, 2.1))
@@ -119,7 +118,7 @@ def measure(small: bool) -> Findings:
 
 
 def _kernels(model: GearModel, known: Equilibrium) -> str:
-    """Times of what an iteration is made of, in words."""
+    """Return the times of the parts of an iteration in words."""
     at = model, known.state, known.tow
     here = linearised(*at)
     factor = factorised(model.pattern, here.stiffness)
@@ -192,7 +191,7 @@ def _beside_trawlkit(warm_s: float, cold_s: float, *, small: bool) -> list[Measu
 
 
 def trawlkit_s(*, small: bool) -> list[float]:
-    """CPU time (s) of each speed in trawlkit's own example, every one but the first warm."""
+    """CPU time (s) of each speed in trawlkit's own example; all but the first start warm."""
     trawlkit, sim = peer('trawlkit'), peer('trawlkit.sim')
     case = trawlkit.run(peer('trawlkit.sim.validation').standard_case())
     start, times = None, []

@@ -1,8 +1,11 @@
-"""One fit of the coefficients, counted in steady states that had to be solved."""
+"""Cost of one fit of the coefficients, as the number of steady states that it solves."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.nuisance import eliminate_nuisance
@@ -10,34 +13,80 @@ from trawl_ros.estimation.fit.objective import objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.benchmark.fit_rivals import (
     CoordinateSearch,
     Counting,
     FiniteDifferencePredictor,
     Searched,
 )
-from trawl_ros.lab.benchmark.fit_trial import LENGTHS, MORE_DRAG, SPEEDS, plant_of, trial
 from trawl_ros.lab.benchmark.gears import default_gear, with_around
-from trawl_ros.lab.benchmark.shares import Part, shares
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
-from trawl_ros.lab.running.timing import timed
-from trawl_ros.model.gear_model import build_model
+from trawl_ros.lab.running.timing import Part, shares, timed
+from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.records.observables import OBSERVABLES
-from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.sensitivity import sensitivities
 from trawl_ros.solver.slow_mode import slow_mode
 
-AROUND = 24
-"""Meshes around the net of the model: fewer than the default, for the rivals' sake."""
+LENGTHS = (200.0, 375.0, 550.0, 725.0, 900.0)
+SPEEDS = (1.8, 2.0, 2.2)
+
+MORE_DRAG = 1.05
+READINGS = 60
+SEED = 1
+
+
+def plant_of(gear: GearRecord) -> GearModel:
+    """Gear that differs from its model: its net has more drag."""
+    drag = {'normal_drag': gear.netting.normal_drag * MORE_DRAG}
+    return build_model(gear.model_copy(update={'netting': gear.netting.model_copy(update=drag)}))
+
+
+def trial(
+    plant: GearModel, lengths: Sequence[float], speeds: Sequence[float]
+) -> list[SteadyWindow]:
+    """One window per steady state, with errors of the size of the instruments' errors."""
+    rng = np.random.default_rng(SEED)
+    windows: list[SteadyWindow] = []
+    found: Equilibrium | None = None
+    for length in lengths:
+        for speed in speeds:
+            found = find_equilibrium(plant, OperatingPoint(length, length, speed), found)
+            seen = dict(zip(OBSERVABLES, found.observables.array(), strict=True))
+            seen |= {'port_length': length, 'starboard_length': length, 'speed': speed}
+            exact = {name: float(seen[name]) for name in (*INPUTS, *MEASURED)}
+            std = {name: CHANNELS[name].bias_std(value) for name, value in exact.items()}
+            means = {name: exact[name] + std[name] * float(rng.normal()) for name in exact}
+            index = len(windows)
+            windows.append(
+                SteadyWindow(
+                    index=index,
+                    state=index,
+                    start_ns=index * READINGS * SECOND,
+                    end_ns=(index + 1) * READINGS * SECOND,
+                    means=means,
+                    noise=dict.fromkeys(exact, 0.0),
+                    bias=std,
+                    counts=dict.fromkeys(exact, READINGS),
+                )
+            )
+    return windows
+
+
+MESHES_AROUND = 24
+"""Meshes around the net of the model: fewer than the default, to keep the rivals' runs short."""
 
 OVER_SEARCH, OVER_DIFFERENCES, FIT_S = 50.0, 10.0, 1.0
 
-PATIENCE = 1.04
-"""The coordinate search ends after this many times as many steady states as it is to need."""
+SEARCH_BUDGET_FACTOR = 1.04
+"""Budget of the coordinate search as a multiple of the steady states it is expected to need."""
 
 OPTIONS = EstimatorOptions(iterations_per_window=1, relinearise=2.0)
-"""All windows are known beforehand: no estimate is asked for on the way."""
+"""Options for windows that are all known beforehand: no estimate is needed on the way."""
 
 QUICK = EstimatorOptions(iterations_per_window=1, iterations_final=2, relinearise=2.0)
 
@@ -48,12 +97,12 @@ PARTS: dict[str, Part] = {
     'their slowest motions': slow_mode,
     'errors of instruments and tows': eliminate_nuisance,
 }
-"""Functions that a fit is made of."""
+"""Main functions of a fit."""
 
 
 @dataclass(frozen=True)
 class Fitted:
-    """Result of a fit: eq. 35, steady states that were solved, CPU time (s), its end."""
+    """Result of a fit: objective of eq. 35, number of steady states, CPU time (s), and its end."""
 
     objective: float
     solves: int
@@ -63,7 +112,9 @@ class Fitted:
 
 def measure(small: bool) -> Findings:
     """Fit by sensitivities, by differences, and by coordinate search."""
-    gear = default_gear(small=True) if small else with_around(default_gear(small=False), AROUND)
+    gear = (
+        default_gear(small=True) if small else with_around(default_gear(small=False), MESHES_AROUND)
+    )
     model, prior = build_model(gear), board_prior(gear)
     lengths, speeds = (LENGTHS[2:3], SPEEDS[1:2]) if small else (LENGTHS, SPEEDS)
     windows = trial(plant_of(gear), lengths, speeds)
@@ -72,7 +123,7 @@ def measure(small: bool) -> Findings:
     of_ours = shares(lambda: _fitted(Counting(model), windows, prior, options), PARTS)
     theirs = _fitted(FiniteDifferencePredictor(model, prior.std), windows, prior, options)
     search = CoordinateSearch(model, windows, prior)
-    budget = round((0.02 if small else 1.0) * PATIENCE * OVER_SEARCH * ours.solves)
+    budget = round((0.02 if small else 1.0) * SEARCH_BUDGET_FACTOR * OVER_SEARCH * ours.solves)
     searched, seconds = timed(lambda: search.search(ours.objective, budget))
     found = (
         f'reached eq. 35 at {searched.objective:.4f} after {searched.solves} steady states'
@@ -134,8 +185,8 @@ def measure(small: bool) -> Findings:
         "one nearby. Gauss–Newton with differences is this package's estimator with derivatives "
         'by forward differences. The coordinate search goes round the coefficients as the '
         'founding paper describes it, on eq. 35 alone; it ends as soon as it is no worse than '
-        f'the estimator, or when it has solved {PATIENCE * OVER_SEARCH:.0f} times as many steady '
-        'states. Each ran once.',
+        f'the estimator, or when it has solved {SEARCH_BUDGET_FACTOR * OVER_SEARCH:.0f} times as '
+        'many steady states. Each ran once.',
     )
 
 

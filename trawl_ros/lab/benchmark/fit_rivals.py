@@ -1,4 +1,4 @@
-"""Rival optimisers of the twelve coefficients, for the benchmark only."""
+"""Other optimisers of the twelve coefficients, for comparison in the benchmark."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,16 +20,18 @@ from trawl_ros.solver.sensitivity import PARAMETERS
 from trawl_ros.solver.slow_mode import slow_mode
 
 DIFFERENCE = 3e-4
-"""Step of the differences: of a coefficient's std, of a metre, of a metre per second. Twice as long
-the error is that of a straight line through a curve; a third as long it is the force that is left
-at a root, and a matter of luck."""
+"""Step of the finite differences: in std of a coefficient, in m, and in m/s.
+
+With twice the step the error is that of the linearisation. With a third of it the error is that of
+the residual force of the steady states, and random.
+"""
 
 FIRST_STEP, LAST_STEP = 0.5, 1e-6
 """Steps of the coordinate search, in std of each coefficient."""
 
 
 class Counting(Predictor):
-    """Predictor that ships, with a count of the steady states it is asked for."""
+    """Predictor of the package that counts the steady states it is asked for."""
 
     def __init__(self, model: GearModel) -> None:
         super().__init__(model)
@@ -63,7 +65,7 @@ class FiniteDifferencePredictor(Counting):
         speed: float,
         start: Equilibrium | None = None,
     ) -> Prediction:
-        """Predict, and move one parameter after another."""
+        """Predict, with derivatives by changing one parameter after another."""
         at = np.array([*coefficients, port_length, starboard_length, speed])
         found = self._solve(at, start)
         values = found.observables.array()
@@ -91,7 +93,7 @@ class Searched:
 
 
 class CoordinateSearch:
-    """Cyclic search of the minimum of eq. 35 along one coefficient after another, in the bounds.
+    """Cyclic search for the minimum of eq. 35 along one coefficient after another, within bounds.
 
     A step that lowers the objective is kept; where neither direction does, the coefficient's
     step is halved. Steady states start from those of the best coefficients so far.
@@ -109,8 +111,10 @@ class CoordinateSearch:
         self.solves = 0
 
     def search(self, target: float, budget: int) -> Searched:
-        """Search until the objective is no worse than ``target``, steps are short, or
-        ``budget`` steady states were solved.
+        """Search until the target or the budget is reached, or the steps become short.
+
+        ``target`` is the objective to reach, ``budget`` the number of steady states that may be
+        solved.
         """
         prior = self._prior
         best = np.array(prior.start)
@@ -133,7 +137,7 @@ class CoordinateSearch:
         return Searched(least, self.solves, least <= target)
 
     def _try(self, coefficients: FloatArray, least: float) -> float:
-        """Objective; the states found become the starts when it is lower than ``least``."""
+        """Return the objective; if it is below ``least``, its states become the next starts."""
         model = self._model.with_coefficients(coefficients)
         found: list[Equilibrium] = []
         try:

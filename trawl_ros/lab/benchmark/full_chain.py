@@ -1,6 +1,6 @@
 """Publisher of all topics of the project at a steady rate, for measurements of the recorder.
 
-Messages are valid and as large as on a tow; what they say is nothing.
+Messages are valid and as large as on a tow; their content has no meaning.
 """
 
 import json
@@ -24,7 +24,7 @@ TOPICS = tuple(
     topic for topic in (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS) if topic.name != DIAGNOSTICS
 )
 SELDOM_HZ = 0.5
-"""Rate of what comes on an event."""
+"""Rate of topics that are published on events."""
 
 TICK_S = 0.004
 NUMBERS = {
@@ -32,18 +32,18 @@ NUMBERS = {
     'sensor_msgs/msg/LaserScan': 360,
     'sensor_msgs/msg/PointCloud2': 10_000,
 }
-"""Length of number sequences by type; 2 in those of others."""
+"""Length of number sequences by type; 2 for other types."""
 
 PARTS = {'visualization_msgs/msg/MarkerArray': 150, 'geometry_msgs/msg/PolygonStamped': 40}
-"""Length of sequences of nested messages by type; 2 in others."""
+"""Length of sequences of nested messages by type; 2 for other types."""
 
 _EMPTY = {'string': '', 'bool': False, 'float32': 0.0, 'float64': 0.0}
 
 
 def schedule(seconds: float, rate: float) -> list[tuple[float, int]]:
-    """Schedule of `TOPICS` in time (s), so that all together come to a rate in Hz.
+    """Schedule of `TOPICS` in time (s) with a total rate in Hz.
 
-    Each has its share by its usual rate, and they do not all speak at once.
+    Each topic has its share by its usual rate, and they are not all published at once.
     """
     usual = np.array([topic.rate or SELDOM_HZ for topic in TOPICS])
     periods = usual.sum() / (usual * rate)
@@ -56,7 +56,7 @@ def schedule(seconds: float, rate: float) -> list[tuple[float, int]]:
 
 
 def example(type_name: str) -> Any:
-    """Make a message of a type, as long as it usually is, with nothing in its fields."""
+    """Make a message of a type, of its usual length, with empty fields."""
     return _made(type_name, NUMBERS.get(type_name, 2), PARTS.get(type_name, 2))
 
 
@@ -80,7 +80,7 @@ def _value(described: Any, numbers: int, parts: int) -> Any:
 
 
 def stamper(type_name: str) -> Callable[[int], bytes]:
-    """Make what gives a message of a type with a stamp (ns), as bytes."""
+    """Return a function that gives a message of a type with a stamp (ns), as bytes."""
     message = example(type_name)
     parts = message.markers if hasattr(message, 'markers') else [message]
     if not hasattr(parts[0], 'header'):
@@ -95,7 +95,7 @@ def stamper(type_name: str) -> Callable[[int], bytes]:
 
 
 class FullChain(TrawlNode):
-    """Node that publishes all topics at a rate in total for a while; its counts go to stdout."""
+    """Node that publishes all topics at a total rate for some time, and prints its counts."""
 
     SPECS: ClassVar = (
         Number('rate', 500.0, 'Hz', 1.0, 1e5, 'Messages per second, of all topics together.'),
@@ -125,7 +125,7 @@ class FullChain(TrawlNode):
             self.end(0)
 
     def finish_work(self) -> None:
-        """Print how many messages were published, by full topic name, and what was not in time."""
+        """Print the number of published messages by full topic name, and the delay."""
         names = {absolute(topic.name, self.get_namespace()) for topic in TOPICS}
         counts = self.traffic.counts('published')
         result = {

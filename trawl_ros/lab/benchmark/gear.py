@@ -28,14 +28,16 @@ from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.stepper import StepFailed
 
 STEPS_S = (0.1, 0.2, 0.25, 0.4, 0.5, 0.6, 0.75, 1.0, 2.0)
-LIMIT = 0.01
+MAX_ERROR_SHARE = 0.01
 REAL_TIME, OVER_MOORDYN = 300.0, 5.0
 
 
 @dataclass(frozen=True)
 class Run:
-    """Run of the manoeuvre at one step: its error (None when a step failed), times real time, and
-    factorisations per step.
+    """Run of the manoeuvre at one step size.
+
+    ``error`` is None if a step failed. ``factor`` is the speed in times real time, and
+    ``factorisations`` the mean number per step.
     """
 
     step_s: float
@@ -50,18 +52,19 @@ class Run:
 
 
 def measure(small: bool) -> Findings:
-    """Run the manoeuvre at one step after another."""
+    """Run the manoeuvre with one step size after another."""
     model = build_model(default_gear(small=small))
     haul = haul_of(model, 20.0 if small else 300.0)
     finest = 0.25 if small else CONVERGED_S
     ride, seconds = timed(lambda: haul.run(finest, finest))
     runs = [_run(haul, step, ride) for step in ((0.5, 1.0, 2.0) if small else STEPS_S)]
-    within = [k for k, run in enumerate(runs) if run.of_range < LIMIT]
+    within = [k for k, run in enumerate(runs) if run.of_range < MAX_ERROR_SHARE]
     best = max(within, key=lambda k: runs[k].factor) if within else None
     rows = []
     if best is None:
         factor = math.nan
-        note = f'no step of those tried keeps all observables within {LIMIT:.0%} of their range'
+        limit = f'{MAX_ERROR_SHARE:.0%} of their range'
+        note = f'no step of those tried keeps all observables within {limit}'
     else:
         step = runs[best].step_s
         factor = haul.duration_s / median_s(lambda: haul.run(step), 1 if small else 3)
@@ -151,7 +154,7 @@ def _draw(runs: Sequence[Run]) -> Figure:
     left.loglog(steps, [100 * run.of_range for run in good], 'o-', label='of the range')
     by_value = [100 * run.error.of_value for run in good if run.error is not None]
     left.loglog(steps, by_value, 's--', label='of the value')
-    left.axhline(100 * LIMIT, color='0.5', linestyle=':', label='1 %')
+    left.axhline(100 * MAX_ERROR_SHARE, color='0.5', linestyle=':', label='1 %')
     left.set(xlabel='time step [s]', ylabel='largest error of any observable [%]')
     right.plot(steps, [run.factor for run in good], 'o-', label='trawl_ros')
     right.axhline(REAL_TIME, color='0.5', linestyle=':', label='to reach')

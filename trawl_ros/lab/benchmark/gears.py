@@ -5,7 +5,7 @@ from trawl_ros.gear.records import GearRecord
 
 
 def default_gear(*, small: bool) -> GearRecord:
-    """The gear that comes with the package; a coarse one of the same make when ``small``."""
+    """Return the default gear, or a coarse version of it if ``small``."""
     gear = load_gear('kaifuha')
     if not small:
         return gear
@@ -14,6 +14,6 @@ def default_gear(*, small: bool) -> GearRecord:
 
 
 def with_around(gear: GearRecord, around: int) -> GearRecord:
-    """The gear with its net cut into ``around`` meshes around, and rows as short as they ask."""
+    """Return the gear with ``around`` meshes around its net, and rows of the matching length."""
     netting = gear.netting.model_copy(update={'around': around})
     return gear.model_copy(update={'netting': netting})

@@ -1,4 +1,4 @@
-"""Growth of time and memory as the net is refined, around and along alike."""
+"""Growth of time and memory as the net is refined, around and along together."""
 
 import sys
 from collections.abc import Sequence
@@ -19,9 +19,8 @@ from trawl_ros.solver.equilibrium import find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import StepFailed
 
-AROUND = (12, 24, 36, 48, 72, 84, 96, 108)
-"""Meshes around, from less than 150 net nodes to more than 5000; rows are as short as keeps the
-angle of the meshes."""
+MESHES_AROUND = (12, 24, 36, 48, 72, 84, 96, 108)
+"""Meshes around, for less than 150 to more than 5000 net nodes; rows keep the mesh angle."""
 
 MOST_NODES = 5000.0
 
@@ -31,10 +30,24 @@ STEP_S = 0.2
 
 @dataclass(frozen=True)
 class GrowthSize:
-    """One refinement: its ``nodes`` in the net, and CPU times (s) of a time step, a steady
-    state from a known one 20 m of warp away, found in so many ``iterations``, and one factorisation
-    with its solution.
-    ``factor_mb`` is the size of the factors, ``peak_mb`` the most that the process ever held.
+    """Costs of one refinement of the net.
+
+    Attributes
+    ----------
+    around
+        Meshes around the mouth.
+    nodes
+        Nodes in the net.
+    step_s
+        CPU time of a time step, s.
+    warm_s, iterations
+        CPU time (s) and iterations of a steady state, started from one with 20 m less warp.
+    factor_s
+        CPU time of one factorisation and its solution, s.
+    factor_mb
+        Size of the factors, MB.
+    peak_mb
+        Peak memory of the process, MB.
     """
 
     around: int
@@ -48,10 +61,10 @@ class GrowthSize:
 
 
 def measure(small: bool) -> Findings:
-    """Time one refinement after another."""
+    """Measure one refinement after another."""
     gear = default_gear(small=False)
     sizes, refused = [], 'no finer one was tried'
-    for around in AROUND[:2] if small else AROUND:
+    for around in MESHES_AROUND[:2] if small else MESHES_AROUND:
         model = build_model(with_around(gear, around))
         try:
             sizes.append(_size(model, small=small))
@@ -139,7 +152,7 @@ def _size(model: GearModel, *, small: bool) -> GrowthSize:
 
 
 def peak_mb() -> float:
-    """Largest resident memory of this process so far, MB; NaN where the system does not say."""
+    """Largest resident memory of this process so far, MB; NaN if the system does not provide it."""
     if sys.platform == 'win32':
         return float('nan')
     import resource

@@ -1,4 +1,4 @@
-"""Hauling manoeuvre in steps of one length after another, under the very same ship."""
+"""Hauling manoeuvre at several step sizes, with an identical motion of ship and winches."""
 
 import math
 from dataclasses import dataclass
@@ -31,13 +31,13 @@ FROM, TO = Command(500.0, 500.0, 2.1), Command(400.0, 400.0, 1.9)
 START = OperatingPoint(FROM.port_length, FROM.starboard_length, FROM.speed)
 
 FINEST_S = 0.025
-"""Step in which ship and winches move in every run, and the shortest that is taken."""
+"""Step of ship and winches in every run, and the shortest step of the gear."""
 
 CONVERGED_S = 0.05
-"""Step of the run that the others are held against."""
+"""Step of the run with which the others are compared."""
 
 LOOK_EVERY_S = 2.0
-"""Time between two looks at the observables, at least; steps that do not divide it look later."""
+"""Shortest interval between two samples of the observables; other steps sample later."""
 
 WATCHED = (
     'door_spread', 'port_door_depth', 'starboard_door_depth', 'port_tension',
@@ -48,8 +48,10 @@ WATCHED = (
 
 @dataclass(frozen=True)
 class Ride:
-    """Ride through the manoeuvre: ``seen`` (n, n_watched) are the observables of `WATCHED`, each
-    ``every_s`` seconds from the first such on; ``factorisations`` of the stepper's matrix.
+    """Observables seen during one run of the manoeuvre.
+
+    ``seen`` (n, n_watched) holds the observables of `WATCHED`, one row every ``every_s`` seconds.
+    ``factorisations`` counts those of the stepper's matrix.
     """
 
     seen: FloatArray
@@ -57,15 +59,16 @@ class Ride:
     factorisations: int
 
     def beside(self, other: 'Ride') -> FloatArray:
-        """Observables (n, n_watched) of this ride when the other one, of longer steps, was seen."""
+        """Observables (n, n_watched) at the samples of another run with longer steps."""
         stride = round(other.every_s / self.every_s)
         return self.seen[stride - 1 :: stride][: len(other.seen)]
 
 
 @dataclass(frozen=True)
 class HaulManoeuvre:
-    """Haul: manoeuvre of one gear, by its start and the towing boundary every
-    `FINEST_S` seconds from the start on.
+    """Hauling manoeuvre of one gear.
+
+    ``start`` is its motion at the start, and ``tows`` its towing boundary every `FINEST_S` seconds.
     """
 
     model: GearModel
@@ -83,7 +86,7 @@ class HaulManoeuvre:
         look_every_s: float = LOOK_EVERY_S,
         options: StepperOptions = STEPPER_OPTIONS,
     ) -> 'Ride':
-        """Run the manoeuvre in steps of one length.
+        """Run the manoeuvre with one step size.
 
         A step that does not converge is taken in two halves, as in `Simulation`.
 
@@ -115,7 +118,7 @@ class HaulManoeuvre:
 
 
 def haul_of(model: GearModel, duration_s: float, start: Equilibrium | None = None) -> HaulManoeuvre:
-    """Return the manoeuvre from the steady state at `FROM` on, which may be given."""
+    """Return the manoeuvre from the steady state at `FROM`, which may be given."""
     if start is None:
         start = find_equilibrium(model, START)
     tows = _tows(model, model.gear, round(duration_s / FINEST_S))
@@ -139,9 +142,10 @@ def _tows(model: GearModel, gear: GearRecord, steps: int) -> tuple[Tow, ...]:
 
 @dataclass(frozen=True)
 class Error:
-    """Largest difference of a run from the converged one: of any watched observable, as a
-    share of the range it goes through (``of_range``) and of its mean size (``of_value``).
-    ``worst`` is the observable with the largest share of its range.
+    """Largest difference of any watched observable between a run and the converged run.
+
+    ``of_range`` is a share of the range of the observable during the manoeuvre, ``of_value`` a
+    share of its mean magnitude. ``worst`` names the observable with the largest share of its range.
     """
 
     of_range: float
@@ -150,7 +154,7 @@ class Error:
 
 
 def error(ride: Ride, converged: Ride) -> Error:
-    """Error of a run against the converged one, looked at in all of its steps."""
+    """Error of a run against the converged run, over all samples."""
     difference = np.abs(ride.seen - converged.beside(ride)).max(axis=0)
     by_range = difference / np.ptp(converged.seen, axis=0)
     by_value = difference / np.abs(converged.seen).mean(axis=0)

@@ -25,13 +25,13 @@ TITLES: Mapping[str, str] = MappingProxyType(
         'recording': 'Recording the full chain',
     }
 )
-"""Modules of this folder, each with ``measure(small) -> Findings``, → their titles."""
+"""Title by module of this folder; each module has ``measure(small) -> Findings``."""
 
 NAMES: tuple[str, ...] = tuple(TITLES)
 
 
 def check_names(names: tuple[str, ...]) -> None:
-    """Refuse names that are none of the modules.
+    """Reject names of modules that do not exist.
 
     Raises
     ------
@@ -44,9 +44,9 @@ def check_names(names: tuple[str, ...]) -> None:
 
 
 def measure(name: str, *, small: bool) -> Findings:
-    """Run one module; ``small`` is for the test suite: on less, in seconds.
+    """Run one module; ``small`` is a version for the test suite, which takes seconds.
 
-    A module that breaks off is a row that is missed, not the end of the report.
+    A module that fails becomes a missed row and does not end the report.
     """
     module = import_module(f'trawl_ros.lab.benchmark.{name}')
     try:

@@ -1,4 +1,4 @@
-"""Calibration of estimates from all of a tow in motion, with the model as its own plant."""
+"""Calibration of estimates from a whole tow in motion, with the model as its own plant."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -38,13 +38,13 @@ from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import MEASURED
 from trawl_ros.solver.trimming.drawn_board import BoardDraw, draw_board
 
-AROUND = 24
+MESHES_AROUND = 24
 """Meshes around the mouth of the net."""
 
 SEEDS = (1, 2, 3, 4, 5, 6)
 
 READ_SEEDS = (201, 202, 203, 204)
-"""Of tows read by instruments; the estimator was tried out on others."""
+"""Seeds of tows read by instruments; the estimator was developed with others."""
 
 NORMAL_95 = 1.96
 
@@ -54,8 +54,10 @@ MOVES = (
     (220.0, 250.0, 0.0, 0.3),
     (270.0, 400.0, 40.0, 0.0),
 )
-"""Changes: from and to (s), of both warps (m) and of the speed (m/s). Warp is paid out at speed:
-at a lower one boards lose their lift meanwhile, and bars go slack."""
+"""Changes: from and to (s), of both warps (m), and of the speed (m/s).
+
+Warp is paid out at towing speed. At a lower speed boards lose their lift and bars go slack.
+"""
 
 START = np.array([520.0, 520.0, 2.3])
 
@@ -84,7 +86,7 @@ BAND = tuple(float(chdtri(12, tail)) for tail in (0.975, 0.025))
 
 @dataclass(frozen=True)
 class MotionTrial:
-    """Trial: the truth (12,), and the fit."""
+    """Case: the true coefficients (12,), and the fit."""
 
     truth: FloatArray
     prior: ParameterVector
@@ -92,24 +94,24 @@ class MotionTrial:
 
     @property
     def squared_error(self) -> float:
-        """Squared error of the coefficients in the metric of the posterior, 12 in the mean."""
+        """Squared error of the coefficients in the metric of the posterior; expectation 12."""
         away = self.fit.values - self.truth
         return float(away @ np.linalg.solve(self.fit.covariance, away))
 
     @property
     def held(self) -> float:
-        """Part of the coefficients that their 95 % intervals hold."""
+        """Share of the coefficients inside their 95 % intervals."""
         std = np.sqrt(np.diag(self.fit.covariance))
         return float(np.mean(np.abs(self.fit.values - self.truth) <= NORMAL_95 * std))
 
     @property
     def shrunk(self) -> FloatArray:
-        """Posterior over prior std (12,)."""
+        """Posterior std over prior std (12,)."""
         return np.sqrt(np.diag(self.fit.covariance)) / self.prior.std
 
 
 def course_tow(duration_s: float = DURATION_S) -> MovingTow:
-    """Tow of the course without any reading; its stretches are averaged alike everywhere."""
+    """Tow of the course without readings; its stretches are averaged like all others."""
     grid = np.arange(0.0, duration_s + 0.5)
     values, rates = np.tile(START, (len(grid), 1)), np.zeros((len(grid), 3))
     for begin, end, warp, speed in MOVES:
@@ -199,7 +201,7 @@ def measure(small: bool) -> Findings:
     """Run the trials."""
     record = default_gear(small=small)
     if not small:
-        record = with_around(record, AROUND)
+        record = with_around(record, MESHES_AROUND)
     gear, factor = TowedGear(build_model(record)), PRIOR_STD_FACTOR * (0.2 if small else 1.0)
     rows: list[MeasuredValue] = []
     seeds, duration = (SEEDS[:1], 80.0) if small else (SEEDS, DURATION_S)
@@ -222,8 +224,8 @@ def measure(small: bool) -> Findings:
     return Findings(
         tuple(rows),
         text=f'{DURATION_S:.0f} s of hauling, two speed steps and veering, in stretches of '
-        f'{STRETCH_S:.0f} s; the model, with {AROUND} meshes around its net, is its own plant and '
-        f'is towed in the same steps of {STEP_S:g} s. Boards are drawn from the '
+        f'{STRETCH_S:.0f} s; the model, with {MESHES_AROUND} meshes around its net, is its own '
+        f'plant and is towed in the same steps of {STEP_S:g} s. Boards are drawn from the '
         f"gear file's prior with {PRIOR_STD_FACTOR:g} of its std, and rigged for the course's "
         'states; the fit begins at the mean of that prior and knows the fastening points. With '
         '*white noise* inputs and sensors are else exact; with *all errors as stated* added mass, '

@@ -1,4 +1,4 @@
-"""Tows of the model itself, read by instruments as they come, and fitted all along."""
+"""Tows of the model itself, read by the default instruments, and fitted as a whole."""
 
 from dataclasses import dataclass, replace
 
@@ -53,14 +53,16 @@ COURSE = (
     (220.0, 480.0, 2.4),
     (270.0, 520.0, 2.4),
 )
-"""Commands: from when (s), length of both warps (m), speed (m/s)."""
+"""Commands: start time (s), length of both warps (m), speed (m/s)."""
 
 PLACES = tuple((warp, speed) for _, warp, speed in COURSE)
-"""Warp length (m) and speed (m/s) of the steady states in which drawn boards must be usable."""
+"""Warp length (m) and speed (m/s) of the steady states that must be usable with drawn boards."""
 
 PRIOR_STD_FACTOR = 0.3
-"""Part of its std to which the boards' prior is narrowed. Fits begin at its mean, of which boards
-fastened for other coefficients must still tow."""
+"""Factor that narrows the std of the boards' prior.
+
+Fits start at its mean, at which boards with fastening points for other coefficients must still tow.
+"""
 
 DURATION_S = 420.0
 
@@ -68,13 +70,13 @@ PERIOD_S, PERIODS = 0.25, 2
 """Period of the simulation, and how many of them make one truth: two a second."""
 
 MOST_DRAWS = 20
-"""Boards with steady states at all places, drawn until one can be towed in time."""
+"""Largest number of boards drawn until one can be towed in time."""
 
 AS_READ_S = 5.0
-"""Reach over which counters are smoothed that are followed as they read."""
+"""Smoothing time of counters that are used as read."""
 
 FROM_REST = StretchOptions(settling_s=0.0)
-"""These tows begin in an equilibrium."""
+"""Option: these tows start in an equilibrium."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +108,9 @@ class PlantTow:
 def tow_plant(
     plant: GearRecord, added_mass: float, seed: int, duration_s: float = DURATION_S
 ) -> PlantTow:
-    """Tow a plant along `COURSE` and read it by the instruments that come with the package, of
-    which every command changes what stays wrong.
+    """Tow a plant along `COURSE` and read it with the default instruments.
+
+    The slowly varying part of each instrument's error changes with every command.
 
     Raises
     ------
@@ -178,7 +181,7 @@ def draw_tow(record: GearRecord, seed: int, duration_s: float = DURATION_S) -> P
 
 
 def read_tow(record: GearRecord, plant: PlantTow, name: str) -> TowReadings:
-    """Readings of a tow."""
+    """Return the readings of a tow."""
     return tow_readings(plant.samples, build_water(record).depth, name)
 
 
@@ -200,7 +203,7 @@ def run_instrument_trial(
 
 
 def wrong_predictions(record: GearRecord, seed: int) -> dict[str, dict[str, float]]:
-    """Departure of the model from a tow at its true parameters, by what it is towed along.
+    """Deviation of the model from a tow at the true parameters, by kind of inputs.
 
     Returns
     -------
@@ -246,14 +249,14 @@ def _towed(plant: PlantTow, along: CorrectedInputs, tow: MovingTow, rows: list[i
 
 
 def _instants(tow: MovingTow) -> IntArray:
-    """Numbers (n, s + 1) of the steps at which each stretch has its instants."""
+    """Step numbers (n, s + 1) of the instants of each stretch."""
     return np.arange(len(tow))[:, None] * tow.steps + np.arange(tow.steps + 1)
 
 
 def _inputs(
     read: TowReadings, plant: PlantTow, grid: FloatArray
 ) -> dict[str, tuple[FloatArray, FloatArray]]:
-    """Inputs and their rates (t, 3): the true ones, with one or the other as it is read."""
+    """Inputs and their rates (t, 3): the true ones, or some of them replaced by readings."""
     counters = [on_grid(*_readings(read, name), grid, AS_READ_S) for name in INPUTS[:2]]
     paths = [
         warp_path(read.series[name], payout, grid)

@@ -1,4 +1,4 @@
-"""Losses and cost of the recorder at the rates of the full chain."""
+"""Losses and cost of the recorder at the rates of all topics together."""
 
 import json
 import math
@@ -19,9 +19,9 @@ from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import NodeFailed, Processes
 
 RATES_HZ = (500.0, 1000.0)
-"""The first is what is asked for."""
+"""Total message rates; the first one has the target."""
 
-SECONDS = 60.0
+DURATION_S = 60.0
 SMALL_SECONDS = 1.0
 PATIENCE_S = 30.0
 RECORDER = 'bag_recorder'
@@ -31,8 +31,8 @@ RECORDER = 'bag_recorder'
 class Recorded:
     """Recording: messages by full topic name as published and as in the bag, and its cost.
 
-    ``behind_s`` is wall time by which the publisher fell behind for good, ``cpu_s`` the
-    recorder's, its start included.
+    ``behind_s`` is the wall time by which the publisher fell behind, and ``cpu_s`` the CPU time of
+    the recorder, with its start.
     """
 
     published: Mapping[str, int]
@@ -100,7 +100,7 @@ def measure(small: bool) -> Findings:
     asked = MeasuredValue(what, math.nan, target=at_most(0.0))
     if (nothing := without_ros(asked)) is not None:
         return nothing
-    seconds = SMALL_SECONDS if small else SECONDS
+    seconds = SMALL_SECONDS if small else DURATION_S
     rows = []
     for rate in RATES_HZ[:1] if small else RATES_HZ:
         with tempfile.TemporaryDirectory() as name:

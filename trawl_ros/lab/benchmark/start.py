@@ -1,4 +1,4 @@
-"""Start-up time of the nodes to their first message, its share by imports, and their memory."""
+"""Start-up time of the nodes to their first message, the share of imports, and memory."""
 
 import math
 import os
@@ -16,7 +16,6 @@ from statistics import median
 import psutil
 
 from trawl_ros.core.resources import share_path
-from trawl_ros.lab.benchmark.bytecode import bytecode_kept
 from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.modules import without_ros
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
@@ -24,7 +23,7 @@ from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.running.chain import MEGABYTE
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes, Value
-from trawl_ros.lab.running.timing import median_s
+from trawl_ros.lab.running.timing import bytecode_kept, median_s
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import steady_state
 
@@ -37,8 +36,9 @@ HEAVIEST = 4
 
 @dataclass(frozen=True)
 class Start:
-    """Start of a node: the topic of its first message, its parameters, and its need of a running
-    simulation for that message.
+    """Node to start, with the topic of its first message.
+
+    ``needs_truth`` is true if the node publishes nothing without a running simulation.
     """
 
     node: str
@@ -49,8 +49,9 @@ class Start:
 
 @dataclass(frozen=True)
 class Begun:
-    """Wall-clock time (s) to the first message of a node, and its resident memory (MB) then; the
-    time is infinite, the memory NaN, where no message came.
+    """Wall-clock time (s) to the first message of a node, and its resident memory (MB) then.
+
+    Without a message the time is infinite and the memory NaN.
     """
 
     seconds: float
@@ -61,7 +62,7 @@ TOW = Start('sim_node', 'truth/winch')
 
 
 def starts(folder: Path) -> tuple[Start, ...]:
-    """All nodes' starts; those without a stream of their own report on /diagnostics."""
+    """Return the starts of all nodes; nodes without a topic of their own report on /diagnostics."""
     return (
         Start('bag_recorder', '/diagnostics', {'output': str(folder / 'bag')}),
         Start('identification_node', '/diagnostics'),
@@ -168,7 +169,7 @@ def _begun(start: Start, folder: Path, environment: Mapping[str, str], repeats: 
 
 
 def _forget(folder: Path) -> None:
-    """Move the bag of a recorder away, for the next one needs an empty place."""
+    """Rename the bag of a recorder, since the next recorder needs a new path."""
     bag = folder / 'bag'
     if bag.exists():
         bag.rename(folder / f'bag_{time.monotonic_ns()}')

@@ -21,9 +21,10 @@ from trawl_ros.solver.operating_point import OperatingPoint
 POINT = OperatingPoint(500.0, 500.0, 2.1)
 
 CHOICES = (('Euler', 0.8), ('RK2', 0.8), ('RK4', 0.1))
-"""Schemes of MoorDyn, each with the inner damping of the lines, as a share of the critical one,
-that lets it take the longest steps. Its local, multistep and implicit schemes are slower or
-unstable on such a web."""
+"""Schemes of MoorDyn, with the internal damping (share of critical) for the longest stable steps.
+
+Its local, multistep and implicit schemes are slower or unstable on such a web.
+"""
 
 COARSE_AROUND = 12
 """Meshes around the net of the smaller web."""
@@ -32,10 +33,10 @@ SHARES = tuple(1.8 / 1.12**k for k in range(14))
 """Steps to try, from long to short, as shares of the web's own limit."""
 
 SAFE_SHARE = 0.5
-"""Of the reference, by RK4."""
+"""Step of the reference, by RK4, as a share of that limit."""
 
 FORCE_SHARE = 0.01
-"""Largest departure of the door's forces from the reference's that counts as stable."""
+"""Largest deviation of the door's forces from the reference that counts as stable."""
 
 
 @dataclass(frozen=True)
@@ -49,8 +50,9 @@ class Stable:
 
 
 def moordyn_web_factor(small: bool) -> float:
-    """Times real time that MoorDyn reaches on a web of as many lines and points as the gear,
-    its doors prescribed, by its best scheme at its largest stable step.
+    """Speed of MoorDyn in times real time, on a web of as many lines and points as the gear.
+
+    The doors are prescribed. MoorDyn runs its best scheme at the largest stable step.
 
     Raises
     ------
@@ -64,8 +66,9 @@ def moordyn_web_factor(small: bool) -> float:
 
 
 def measure(small: bool) -> Findings:
-    """Find the largest stable step of each scheme, and time it. A scheme that is stable at no
-    step that is tried has no row.
+    """Find the largest stable step of each scheme, and time it.
+
+    A scheme without a stable step among those tried has no row.
     """
     what = 'MoorDyn on a web of as many lines and points as the gear'
     try:
@@ -104,7 +107,7 @@ def _smaller(scheme: str, damping: float) -> MeasuredValue:
 
 
 def best_of(found: tuple[Stable, ...]) -> Stable:
-    """Return the fastest.
+    """Return the fastest scheme.
 
     Raises
     ------
@@ -170,7 +173,7 @@ def _stable_runs(
 
 
 def explicit_limit(model: GearModel, start: Equilibrium) -> float:
-    """Stability limit (s) of explicit steps: 2/ω, ω² twice the largest stiffness over mass."""
+    """Stability limit (s) of explicit steps: 2/ω, with ω² twice the largest stiffness over mass."""
     tow = start.tow
     side = np.maximum(model.warp_side, 0)
     rest = np.where(model.warp_side >= 0, tow.lengths[side] / model.warp_segments, model.rest)

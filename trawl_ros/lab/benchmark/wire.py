@@ -1,4 +1,4 @@
-"""Speed of one towed wire through a manoeuvre, here and in MoorDyn, at steps of like error."""
+"""Speed of one towed wire through a manoeuvre, here and in MoorDyn, at steps of equal error."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -7,8 +7,13 @@ from dataclasses import dataclass, replace
 from statistics import median
 
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
-from trawl_ros.lab.reference_codes.history import History, apart
-from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre, haul_and_turn, short_manoeuvre
+from trawl_ros.lab.reference_codes.manoeuvre import (
+    History,
+    WireManoeuvre,
+    apart,
+    haul_and_turn,
+    short_manoeuvre,
+)
 from trawl_ros.lab.reference_codes.moordyn_wire import MoorDynWire
 from trawl_ros.lab.reference_codes.own_wire import own_history, own_model, own_steady
 from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, TowedWire
@@ -20,8 +25,8 @@ SEGMENTS = 20
 
 OVER_MOORDYN = 1.5
 
-LIMIT = 0.01
-"""Largest error against a program's own converged run, of depth and tension at any time."""
+MAX_ERROR_SHARE = 0.01
+"""Largest error of depth and tension at any time, against the program's own converged run."""
 
 OWN_CONVERGED = 0.1
 OWN_STEPS = (4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.5)
@@ -29,16 +34,18 @@ OWN_STEPS = (4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.5)
 
 CONVERGED = ('RK4', 0.002)
 
-COUPLING = 0.2
-"""Time (s) of uniform motion of the block in MoorDyn: few calls of it, and still exact."""
+COUPLING_S = 0.2
+"""Time (s) of uniform motion of the block in MoorDyn: exact, with few calls."""
 
-SETTLING = 200.0
+SETTLING_S = 200.0
 
 
 @dataclass(frozen=True)
 class SchemeChoice:
-    """MoorDyn's scheme with the inner damping of the wire (s) that lets it take its longest
-    steps, and steps to try (s), from long to short.
+    """Scheme of MoorDyn with the settings that allow its longest steps.
+
+    ``damping_time`` (s) is the internal damping of the wire that allows them. ``steps`` (s) are the
+    steps to try, from long to short.
     """
 
     scheme: str
@@ -51,15 +58,16 @@ CHOICES = (
     SchemeChoice('RK2', 0.004, (0.008, 0.007, 0.006, 0.005, 0.004)),
     SchemeChoice('RK4', 0.002, (0.010, 0.009, 0.008, 0.007, 0.006)),
 )
-"""Of its other schemes, Heun's is unstable from 3 ms on, the implicit ones converge only at
-steps that leave them slower, and the multistep ones break down."""
+"""Tested schemes of MoorDyn.
+
+Of its other schemes, Heun's is unstable from 3 ms on. The implicit ones converge only at steps that
+make them slower, and the multistep ones break down.
+"""
 
 
 @dataclass(frozen=True)
 class Fastest:
-    """The longest step (s) within the limit, its error, and how many times faster than real time
-    it is.
-    """
+    """Longest step (s) within the error limit, with its error and its speed in times real time."""
 
     step: float
     error: float
@@ -67,11 +75,11 @@ class Fastest:
 
 
 Run = Callable[[float], History]
-"""The manoeuvre in steps of that many seconds."""
+"""Function that runs the manoeuvre with a step size, s."""
 
 
 def measure(small: bool) -> Findings:
-    """Find the longest step within the limit, here and for each scheme of MoorDyn."""
+    """Find the longest step within the error limit, here and for each scheme of MoorDyn."""
     manoeuvre = short_manoeuvre() if small else haul_and_turn()
     ours = fastest(*_own(manoeuvre), small=small)
     rows = [_own_row(ours)]
@@ -98,21 +106,22 @@ def measure(small: bool) -> Findings:
         text=f'{WIRE.length:g} m of wire with a lump, {SEGMENTS} segments, for '
         f'{manoeuvre.duration:g} s: hauling at 0.5 m/s, then a turn at 0.5°/s and '
         f'{WIRE.speed:g} m/s. Each program at the longest step at which depth and tension stay '
-        f'within {LIMIT:.0%} of its own converged run at any time; CPU time, median of repeats. '
+        f'within {MAX_ERROR_SHARE:.0%} of its own converged run at any time; CPU time, '
+        'median of repeats. '
         'MoorDyn may damp the wire as each of its schemes likes it best; the implicit method '
         'here has no use for that.',
     )
 
 
 def fastest(run: Run, steps: Sequence[float], converged: History, *, small: bool) -> Fastest | None:
-    """The longest of steps from long to short within the limit; None when there is none."""
+    """Return the longest step, from long to short, within the limit; None if there is none."""
     for step in steps:
         try:
             first = run(step)
         except (PeerFailed, StepFailed):
             continue
         error = apart(first, converged).largest
-        if error < LIMIT:
+        if error < MAX_ERROR_SHARE:
             again = [run(step) for _ in range(0 if small else 4)]
             return Fastest(step, error, median(one.factor for one in (first, *again)))
     return None
@@ -143,7 +152,7 @@ def _peer(choice: SchemeChoice, manoeuvre: WireManoeuvre, *, small: bool) -> Fas
 
 
 def moordyn_history(wire: TowedWire, scheme: str, step: float, manoeuvre: WireManoeuvre) -> History:
-    """The manoeuvre in MoorDyn after a straight tow.
+    """Run the manoeuvre in MoorDyn after a straight tow.
 
     Raises
     ------
@@ -153,15 +162,15 @@ def moordyn_history(wire: TowedWire, scheme: str, step: float, manoeuvre: WireMa
         If MoorDyn breaks down.
     """
     lump = (INTEGRATED.lag, INTEGRATED.depth)
-    with closing(MoorDynWire(wire, SEGMENTS, scheme, step, lump, coupling=COUPLING)) as system:
-        system.settle(SETTLING)
+    with closing(MoorDynWire(wire, SEGMENTS, scheme, step, lump, coupling=COUPLING_S)) as system:
+        system.settle(SETTLING_S)
         return system.follow(manoeuvre)
 
 
 def _own_row(ours: Fastest | None) -> MeasuredValue:
     what = 'one wire of 600 m in 20 segments, hauling and turning'
     if ours is None:
-        note = f'no step of those tried keeps the error below {LIMIT:.0%}'
+        note = f'no step of those tried keeps the error below {MAX_ERROR_SHARE:.0%}'
         return MeasuredValue(what, math.nan, '× real time', note=note)
     each = 1e3 * ours.step / ours.factor
     note = f'steps of {ours.step:g} s, error {ours.error:.2%}; {each:.2f} ms per step'

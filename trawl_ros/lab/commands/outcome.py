@@ -1,20 +1,20 @@
 """Progress and outcome of the lab's commands on the terminal."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import click
 from rich.console import Console
 
-from trawl_ros.cli.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.interruption import INTERRUPTED
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.lab.report.measured import MeasuredValue
 
 
 @contextmanager
 def stoppable(left: str = 'no report is written') -> Iterator[tuple[ProgressDisplay, Console]]:
-    """Show progress; Ctrl-C ends the command, and it is said what is left."""
+    """Show progress; Ctrl-C ends the command and prints ``left``, what remains of its work."""
     console = error_console()
     try:
         with ProgressDisplay(console) as display:
@@ -22,15 +22,6 @@ def stoppable(left: str = 'no report is written') -> Iterator[tuple[ProgressDisp
     except KeyboardInterrupt:
         console.print(f'stopped; {left}')
         raise SystemExit(INTERRUPTED) from None
-
-
-@contextmanager
-def until_stopped() -> Iterator[Callable[[], bool]]:
-    """Let Ctrl-C end a tow early, and the command once its report is written."""
-    with Interruption() as interruption:
-        yield lambda: interruption.requested
-    if interruption.requested:
-        raise SystemExit(INTERRUPTED)
 
 
 def print_missed(rows: Iterable[MeasuredValue], console: Console) -> None:
@@ -47,6 +38,6 @@ def print_reached(rows: Sequence[MeasuredValue], report: Path) -> None:
 
 
 def print_outcome(rows: Sequence[MeasuredValue], report: Path) -> None:
-    """Print both."""
+    """Print the targets that are missed, and how many are reached."""
     print_missed(rows, error_console())
     print_reached(rows, report)

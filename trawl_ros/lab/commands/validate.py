@@ -15,7 +15,7 @@ from trawl_ros.lab.validation.run import validate
 @click.argument('cases', nargs=-1, metavar='[CASE]...')
 @REPORT_OPTION
 @FORCE_OPTION
-@click.option('--small', is_flag=True, help='Each case on less, in seconds.')
+@click.option('--small', is_flag=True, help='Small version of every case, which takes seconds.')
 @click.option(
     '--workers', default=2, show_default=True, type=click.IntRange(1, 64), help='Processes.'
 )
@@ -23,8 +23,8 @@ def command(cases: tuple[str, ...], out: Path, force: bool, small: bool, workers
     """Check the model against closed forms, the paper and other programs.
 
     Runs every CASE, or those named, and writes validation.json, report.html, report.md and
-    their figures. A check that does not hold is part of the report; the exit code is 0
-    whenever the report is complete.
+    their figures. The report lists checks that do not hold; the exit code is 0 if the
+    report is complete.
     """
     console = error_console()
 

@@ -1,1 +1,1 @@
-"""`trawl demo`: the whole chain, towed, recorded, replayed, refitted and diagnosed."""
+"""`trawl demo`: tow, record, replay, identification and diagnosis in one command."""

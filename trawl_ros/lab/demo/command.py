@@ -1,13 +1,15 @@
 """``trawl demo``: the whole chain through the real ROS graph, one process per node."""
 
+import json
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 from rich.console import Console
+from rich.table import Table
 
 from trawl_ros.api import trials
 from trawl_ros.bags.reader import summarise
@@ -18,10 +20,10 @@ from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.files import write_figure
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.core.resources import packaged
+from trawl_ros.estimation.report.motion import motion_lines, motion_table
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.lab.demo.folder import DemoFolder
 from trawl_ros.lab.demo.hidden import hidden_effect
-from trawl_ros.lab.demo.report import load_result, print_motion, print_result
 from trawl_ros.lab.running.chain import start_chain, stop_chain
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes
@@ -40,6 +42,68 @@ from trawl_ros.scenario.scenario import Scenario, load_scenario, true_coefficien
 from trawl_ros.sentences.table import load_tables
 from trawl_ros.view.bags import TowBags
 
+
+def load_result(folder: Path) -> dict[str, Any]:
+    """Read ``identification.json`` of a folder.
+
+    Raises
+    ------
+    TrawlError
+        If it is not there.
+    """
+    path = folder / 'identification.json'
+    try:
+        return dict(json.loads(path.read_text(encoding='utf-8')))
+    except (OSError, ValueError) as reason:
+        raise TrawlError(
+            f'{path}: cannot be read; expected the report of the identification'
+        ) from reason
+
+
+def print_result(result: Mapping[str, Any], truth: Mapping[str, float]) -> None:
+    """Print the coefficients next to the true ones, and the errors per channel."""
+    console = Console(highlight=False, soft_wrap=True)
+    table = Table(title=f'Board coefficients from {result["windows"]} steady windows')
+    table.add_column('', style='bold')
+    for heading in ('start', 'value', 'low', 'high', 'true', 'in interval', 'determined'):
+        table.add_column(heading, justify='right')
+    for name, entry in result['coefficients'].items():
+        numbers = [entry[key] for key in ('start', 'value', 'low', 'high')]
+        inside = entry['low'] <= truth[name] <= entry['high']
+        table.add_row(
+            name,
+            *(f'{number:.3f}' for number in (*numbers, truth[name])),
+            'yes' if inside else 'no',
+            'yes' if entry['determined'] else 'no',
+        )
+    console.print(table)
+    table = Table(title='Mean error over mean measured value')
+    table.add_column('', style='bold')
+    for heading in ('before', 'after', 'held out'):
+        table.add_column(heading, justify='right')
+    for name, entry in result['channels'].items():
+        errors = (entry[f'mnae_{key}'] for key in ('start', 'end', 'held_out'))
+        table.add_row(name.replace('_', ' '), *map(_percent, errors))
+    console.print(table)
+    objective = ', '.join(f'{value:.4f} at the {key}' for key, value in result['objective'].items())
+    console.print(f'Objective of eq. 35: {objective}.')
+
+
+def print_motion(report: Report, duration_s: float) -> None:
+    """Print the estimate from the whole tow of a duration (s), or why there is none."""
+    console = Console(highlight=False, soft_wrap=True)
+    if report.motion is not None:
+        counted = f'{report.motion.duration_s / 60:.0f} of {duration_s / 60:.0f} min'
+        console.print(f'The whole tow was used, hauling included: {counted}.', style='bold')
+        console.print(motion_table(report))
+    for line in motion_lines(report):
+        console.print(line, markup=False)
+
+
+def _percent(value: float | None) -> str:
+    return '–' if value is None else f'{100.0 * value:.1f} %'
+
+
 if TYPE_CHECKING:
     from trawl_ros.lab.running.monitor import Monitor
 
@@ -49,14 +113,14 @@ SYSTEMS = ('marport', 'scantrol', 'ship')
 
 @dataclass(frozen=True)
 class TopicCounts:
-    """Traffic: messages by full topic name, as counted by publishers, and as in the bag."""
+    """Messages by full topic name, as counted by publishers and as found in the bag."""
 
     published: Mapping[str, int]
     recorded: Mapping[str, int]
 
     @property
     def lost(self) -> dict[str, tuple[int, int]]:
-        """Topics on which the two numbers differ, with both."""
+        """Topics on which the two counts differ, with both counts."""
         return {
             topic: (self.published.get(topic, 0), self.recorded.get(topic, 0))
             for topic in sorted(self.published.keys() | self.recorded.keys())
@@ -66,19 +130,21 @@ class TopicCounts:
 
 @click.command('demo')
 @click.option('--out', required=True, type=FOLDER, help='Folder for the results.')
-@click.option('--scenario', default='demo', show_default=True, type=SCENARIO, help='What is towed.')
 @click.option(
-    '--diagnosis/--no-diagnosis', default=True, show_default=True, help='At the end, tow in a '
-    'current that the model does not know, and find it.',
+    '--scenario', default='demo', show_default=True, type=SCENARIO, help='Scenario to tow.'
+)
+@click.option(
+    '--diagnosis/--no-diagnosis', default=True, show_default=True, help='At the end, diagnose '
+    'tows in a current that the model lacks.',
 )  # fmt: skip
 def command(out: Path, scenario: Path, diagnosis: bool) -> None:
     """Tow a sea trial through the ROS graph, record it, replay it, and refit the boards.
 
-    Every node is a process of its own; they talk by DDS on this machine only. All of the tow is
-    learned from, hauling included. The folder takes the bag, identification.json, figures, and
-    summary.json. At the end four tows of the default gear are diagnosed, three of them in a
-    current that the model does not know; it is found, and repaired: the folder's part 'hidden'
-    has bags and reports.
+    Every node is a separate process, and they communicate by DDS on this machine only. The boards
+    are estimated from the whole tow, hauling included. The folder receives the bag,
+    identification.json, figures and summary.json. At the end four tows of the default gear are
+    diagnosed, three of them in a current that the model lacks. The diagnosis finds the current,
+    and the gear is towed again with it. Bags and reports of this part are in the folder 'hidden'.
     """
     path = packaged(scenario, 'scenarios').absolute()
     loaded = load_scenario(path)
@@ -177,7 +243,7 @@ def _replay(
     folder: DemoFolder,
     console: Console,
 ) -> None:
-    """Replay the instruments' part of the bag to the identification, and let it finish."""
+    """Replay the instrument topics of the bag to the identification, and let it finish."""
     path = str(scenario.path)
     topics = list(dict.fromkeys(absolute(channel.topic) for channel in CHANNELS.values()))
     processes.start(
@@ -185,7 +251,7 @@ def _replay(
         use_sim_time=True,
         gear=_gear_file(scenario),
         truth=path,
-        # At this speed all of the tow is better learned from at once, from the bag.
+        # At this speed the whole tow is fitted afterwards, from the bag.
         motion=False,
         output=str(folder.results),
     )
@@ -203,7 +269,9 @@ def _replay(
             detail = f'{windows} steady windows'
             display(WorkProgress('replaying', done, scenario.duration_s, 's', detail))
             time.sleep(LOOK_S)
-    console.print('identification: all windows together, and those left out of the fit')
+    console.print(
+        'identification: fit to all windows, and check on the windows held out of the fit'
+    )
     success, message = monitor.finish_identification(processes.check)
     if not success:
         raise TrawlError(f'{folder.bag}: {message}')
@@ -212,11 +280,11 @@ def _replay(
 
 
 def _learn(scenario: Scenario, folder: DemoFolder, console: Console) -> Report:
-    """Refit the boards by all of the tow.
+    """Fit the boards to the whole tow.
 
-    Its report replaces that of the replay: windows are the same, and both estimates are shown.
+    The report replaces that of the replay: it has the same windows, and shows both estimates.
     """
-    console.print('identification: all of the tow, from what its windows tell on')
+    console.print('identification: fit to the whole tow, starting from the estimate of its windows')
     with ProgressDisplay(console) as display:
         found = trials.identify(
             [folder.bag],
@@ -237,7 +305,7 @@ def _gear_file(scenario: Scenario) -> str:
 
 
 def _view(scenario: Scenario, folder: DemoFolder, console: Console) -> None:
-    """Draw the tow in the viewer, where that is installed and this machine can draw."""
+    """Draw the tow in the viewer, if it is installed and this machine can draw."""
     try:
         from trawl_ros.view.picture import write_picture
 
@@ -260,7 +328,7 @@ def _draw(scenario: Scenario, folder: DemoFolder) -> list[str]:
 
 
 def _speak(scenario: Scenario, folder: DemoFolder) -> None:
-    """Write the tow as the sentences that a ship's instruments would have sent."""
+    """Write the tow as sentences of a ship's instruments."""
     density = build_water(scenario.plant).density
     write_sentence_log(
         folder.bag,
@@ -283,6 +351,8 @@ def _close(
             f'{topic}: {published} published, {recorded} recorded'
             for topic, (published, recorded) in traffic.lost.items()
         )
-        raise TrawlError(f'{folder.bag}: messages are missing, expected all: {listed}')
+        raise TrawlError(
+            f'{folder.bag}: messages are missing; expected all that were published: {listed}'
+        )
     click.echo(f'{folder.bag}: {recorded} messages, as many as were published')
     click.echo(f'{folder.path}: summary.json, identification.json and figures')

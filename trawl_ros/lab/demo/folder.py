@@ -15,22 +15,21 @@ SUMMARY = 'summary.json'
 class DemoFolder:
     """Folder of one demo.
 
-    It is marked from the beginning, so that the next demo may replace it also if this one
-    never comes to its end.
+    It is marked from the beginning, so that a later demo can replace it even if this one is
+    interrupted.
 
     Parameters
     ----------
     path
-        New, empty, or what a former demo left.
+        New, empty, or left by an earlier demo.
 
     Raises
     ------
     TrawlError
-        If there is something else, or the folder cannot be made.
+        If it holds other files, or cannot be made.
     """
 
     SENTENCES = 'marport.nmea'
-    FIGURES = ('history.png', 'gear.png')
     RESULTS = 'identification'
     HIDDEN = 'hidden'
 
@@ -66,7 +65,7 @@ class DemoFolder:
         return self.path / self.HIDDEN
 
     def gather_results(self) -> list[str]:
-        """Move the report up, beside the rest; return the names of its files."""
+        """Move the report into the demo's folder; return the names of its files."""
         names = sorted(file.name for file in self.results.iterdir())
         for name in names:
             (self.results / name).replace(self.path / name)
@@ -84,8 +83,8 @@ class DemoFolder:
             content = None
         if not isinstance(content, dict) or content.get('made_by') != MADE_BY:
             raise TrawlError(
-                f'{self.path}: holds files that no demo has made, which are not written over; '
-                'expected a new folder, an empty one, or that of a former demo'
+                f'{self.path}: holds files that `trawl demo` has not written and does not replace; '
+                'expected a new folder, an empty one, or that of an earlier demo'
             )
 
     def _clear(self) -> None:

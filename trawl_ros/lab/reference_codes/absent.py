@@ -1,4 +1,4 @@
-"""Import of reference codes, with a clear sentence where one is not installed."""
+"""Import of reference codes, with a clear error if one is not installed."""
 
 from importlib import import_module
 from types import ModuleType
@@ -7,11 +7,11 @@ from trawl_ros.core.errors import TrawlError
 
 
 class PeerAbsent(TrawlError):
-    """Reference code that is not installed."""
+    """Error: a reference code is not installed."""
 
 
 class PeerFailed(TrawlError):
-    """Reference code that gave up."""
+    """Error: a reference code failed."""
 
 
 def peer(name: str) -> ModuleType:

@@ -1,7 +1,7 @@
-"""Line of rope on its own, for the same kernel, assembly and solvers as a whole gear.
+"""Single line of rope, with the same kernel, assembly and solvers as a whole gear.
 
-The boards that a gear model always has float beside it: no rope, no area, as heavy as the water
-they displace.
+A gear model always has boards. Here they float next to the line, without ropes or area, and as
+heavy as the water they displace.
 """
 
 from collections.abc import Mapping
@@ -32,18 +32,18 @@ WIRE: Mapping[str, float] = {
     'normal_drag': 1.2,
     'tangential_drag': 0.02,
 }
-"""The wire of the closed forms, in keys of the gear file."""
+"""Wire of the closed forms, in keys of the gear file."""
 
 SEA = Water(density=1025.0, gravity=9.80665)
 
 FORCE_LEFT = 1e-5
-"""Largest force (N) left on a settled line: far below what the closed forms are compared to."""
+"""Largest residual force (N) of an equilibrium, far below the tolerance of the closed forms."""
 
 
 def lone_line(
     wire: Mapping[str, float], segments: int, water: Water, held: Held = 'at its start'
 ) -> GearModel:
-    """A gear model of nothing but one line.
+    """Return a gear model of a single line.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def lone_line(
 
 
 def loaded(model: GearModel, mass: float, volume: float, drag_area: float) -> GearModel:
-    """The same line with a lump at its last node: mass (kg), volume (m³), C_D A (m²)."""
+    """Return the line with a lump at its last node: mass (kg), volume (m³), C_D A (m²)."""
     last = np.zeros(model.nodes)
     last[-1] = 1.0
     return replace(
@@ -115,7 +115,7 @@ def holding(length: float, start: FloatArray, end: FloatArray, speed: float = 0.
 
 
 def lying(nodes: FloatArray, velocity: FloatArray) -> State:
-    """A line at ``nodes`` (n, 3), all of it moving with one velocity (3,), m/s."""
+    """Return a line at ``nodes`` (n, 3) that moves with one velocity (3,), m/s."""
     return State(
         nodes=nodes,
         board_positions=np.array([[0.0, 50.0, -10.0], [0.0, -50.0, -10.0]]),
@@ -128,7 +128,7 @@ def lying(nodes: FloatArray, velocity: FloatArray) -> State:
 
 
 def settled(model: GearModel, nodes: FloatArray, tow: Tow) -> State:
-    """The steady state of a line that starts from ``nodes`` (n, 3).
+    """Return the steady state of a line that starts from ``nodes`` (n, 3).
 
     Raises
     ------

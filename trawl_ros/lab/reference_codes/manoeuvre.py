@@ -1,4 +1,7 @@
-"""Manoeuvre of hauling, then a turn, as smooth functions of time for any program to follow."""
+"""Manoeuvre of hauling and turning as smooth functions of time, and histories of it.
+
+Any program can follow the manoeuvre; histories of two programs can be compared.
+"""
 
 from dataclasses import dataclass
 from math import cos, pi, sin
@@ -7,17 +10,92 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 
+
+@dataclass(frozen=True)
+class History:
+    """History of a manoeuvre in one program.
+
+    Attributes
+    ----------
+    times
+        (n,) s, rising.
+    depth
+        (n,) of the lump, m.
+    tension
+        (n,) force on the block, N.
+    seconds
+        CPU time that the motion took, s.
+    """
+
+    times: FloatArray
+    depth: FloatArray
+    tension: FloatArray
+    seconds: float
+
+    @property
+    def factor(self) -> float:
+        """Speed over real time."""
+        return float(self.times[-1] - self.times[0]) / self.seconds
+
+
+@dataclass(frozen=True)
+class Apart:
+    """Largest and root-mean-square differences over time.
+
+    They are shares of the reference's value at the same instant.
+    """
+
+    depth: float
+    tension: float
+    depth_rms: float
+    tension_rms: float
+
+    @property
+    def largest(self) -> float:
+        """The larger of both largest differences."""
+        return max(self.depth, self.tension)
+
+
+def apart(history: History, reference: History) -> Apart:
+    """Compare two histories at the instants of the coarser one.
+
+    Values of the finer history are interpolated linearly. NaN, where a program broke down, counts
+    as an infinite difference.
+    """
+    times = min((history, reference), key=lambda one: len(one.times)).times
+    shares = []
+    for name in ('depth', 'tension'):
+        of, to = (np.interp(times, one.times, getattr(one, name)) for one in (history, reference))
+        with np.errstate(invalid='ignore', over='ignore'):
+            share = np.abs(of / to - 1.0)
+        shares.append(np.where(np.isfinite(share), share, np.inf))
+    with np.errstate(over='ignore'):
+        rms = [float(np.sqrt((share**2).mean())) for share in shares]
+    return Apart(float(shares[0].max()), float(shares[1].max()), rms[0], rms[1])
+
+
 TURN_RATE = float(np.radians(0.5))
-"""Of the ship in the turn, rad/s."""
+"""Rate of turn of the ship, rad/s."""
 
 
 @dataclass(frozen=True)
 class Pace:
-    """Smooth ramp: a rate that rises to ``top`` in ``rise`` seconds, stays, and falls likewise, so
-    that ``total`` is covered; it starts at ``start`` (s).
+    """Rate that rises smoothly, stays constant, and falls smoothly.
 
-    It swells as half a cosine wave, for a winch or a rudder gives no jerk that would ring in
-    the wire.
+    Attributes
+    ----------
+    start
+        Time at which it starts, s.
+    total
+        Integral of the rate over time.
+    top
+        Largest rate.
+    rise
+        Duration of the rise, and of the fall, s.
+
+    Notes
+    -----
+    The rise is half a cosine wave: a winch or a rudder gives no jerk that would ring in the wire.
     """
 
     start: float
@@ -101,7 +179,7 @@ def haul_and_turn(length: float = 600.0, speed: float = 2.0) -> WireManoeuvre:
 
 
 def short_manoeuvre(length: float = 600.0, speed: float = 2.0) -> WireManoeuvre:
-    """The beginnings of both: 10 m of hauling and 20° of turn."""
+    """Return a short version: 10 m of hauling and 20° of turn."""
     haul = Pace(start=5.0, total=-10.0, top=-0.5, rise=10.0)
     turn = Pace(start=haul.end, total=pi / 9, top=TURN_RATE, rise=20.0)
     return WireManoeuvre(length, speed, haul, turn, duration=turn.end + 10.0)

@@ -6,21 +6,29 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.lab.reference_codes.moordyn import MoorDyn
-from trawl_ros.lab.reference_codes.moordyn_input import Line, LineType, Options, Point, input_file
+from trawl_ros.lab.reference_codes.moordyn import (
+    Line,
+    LineType,
+    MoorDyn,
+    Options,
+    Point,
+    input_file,
+)
 from trawl_ros.model.assembly import points_of, rest_lengths
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.line import BarProperties
 from trawl_ros.model.state import State, Tow
 
 COUPLED = 8
-"""Points that are moved along: both doors' fastening points, then both blocks."""
+"""Number of prescribed points: the fastening points of both doors, then both blocks."""
 
 
 @dataclass(frozen=True)
 class Web:
-    """Web in tow: each bar of a gear is a line of one segment, each node a free point, and
-    fastening points and blocks are coupled ones.
+    """Web of single-segment lines in tow.
+
+    Each bar of a gear is a line of one segment, and each node a free point. Fastening points and
+    towing blocks are coupled points.
 
     Attributes
     ----------
@@ -41,7 +49,7 @@ class Web:
     gravity: float
 
     def started(self, scheme: str, step: float) -> MoorDyn:
-        """Return the web in MoorDyn, under way."""
+        """Return the web as a running system in MoorDyn."""
         options = Options(scheme, step, self.density, self.gravity)
         text = input_file(self.kinds, self.points, self.lines, options)
         system = MoorDyn(text, self.places[-COUPLED:], self.velocities[-COUPLED:])
@@ -117,7 +125,7 @@ def _columns(bars: BarProperties) -> FloatArray:
 
 
 def _line_type(row: FloatArray, density: float, damping: float) -> LineType:
-    """Line type with a bar's own areas, on the diameter of its displaced volume."""
+    """Return a line type with a bar's own areas, on the diameter of its displaced volume."""
     stiffness, mass, volume, across, along, added, added_along = (float(x) for x in row)
     diameter = float(np.sqrt(4.0 * volume / np.pi))
     return LineType(

@@ -6,19 +6,24 @@ from itertools import pairwise
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.lab.reference_codes.history import History
-from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre
-from trawl_ros.lab.reference_codes.moordyn import MoorDyn
-from trawl_ros.lab.reference_codes.moordyn_input import Line, LineType, Options, Point, input_file
+from trawl_ros.lab.reference_codes.manoeuvre import History, WireManoeuvre
+from trawl_ros.lab.reference_codes.moordyn import (
+    Line,
+    LineType,
+    MoorDyn,
+    Options,
+    Point,
+    input_file,
+)
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire, WireSteadyState
 
 BLOCK, LUMP, WIRE_LINE = 0, 1, 0
 
-COUPLING = 0.1
+COUPLING_S = 0.1
 """Longest time (s) over which MoorDyn sees the block in uniform motion."""
 
-SETTLING = 2500.0
-"""Time (s) in which the wire comes to rest from the straight line it starts as."""
+SETTLING_S = 2500.0
+"""Time (s) in which the wire reaches its steady state from a straight line."""
 
 
 class MoorDynWire:
@@ -44,7 +49,7 @@ class MoorDynWire:
         step: float,
         lump: tuple[float, float],
         *,
-        coupling: float = COUPLING,
+        coupling: float = COUPLING_S,
     ) -> None:
         make = LineType(
             diameter=wire.diameter,
@@ -75,8 +80,8 @@ class MoorDynWire:
         self._coupling = step * max(1, int(coupling / step + 1e-9))
         self._system = MoorDyn(text, self._block, wire.speed * np.array([1.0, 0.0, 0.0]))
 
-    def settle(self, duration: float = SETTLING) -> WireSteadyState:
-        """Tow straight on; return the final state."""
+    def settle(self, duration: float = SETTLING_S) -> WireSteadyState:
+        """Tow straight ahead; return the final state."""
         velocity = self._wire.speed * np.array([1.0, 0.0, 0.0])
         force = np.zeros((1, 3))
         for _ in range(round(duration / self._coupling)):
@@ -85,7 +90,7 @@ class MoorDynWire:
         return WireSteadyState(float(off[2]), float(off[0]), float(np.linalg.norm(force)))
 
     def follow(self, manoeuvre: WireManoeuvre) -> History:
-        """Follow a manoeuvre; positions are those of the ends of steps."""
+        """Follow a manoeuvre; positions are those at the ends of steps."""
         count = round(manoeuvre.duration / self._coupling)
         times = self._coupling * np.arange(count + 1, dtype=float)
         track = manoeuvre.track(times)

@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.lab.reference_codes.absent import PeerFailed, peer
-from trawl_ros.lab.reference_codes.moordyn_input import DEEP
+from trawl_ros.lab.reference_codes.moordyn import WATER_DEPTH_M
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire, WireSteadyState
 
-PARTS = 40
-"""Pieces of the line's shape over which MoorPy sums its drag."""
+LINE_PIECES = 40
+"""Number of pieces of the line over which MoorPy sums its drag."""
 
-MOVED = 1e-4
-"""Move of the lump (m) between two solutions below which they are one."""
+POSITION_TOLERANCE_M = 1e-4
+"""Tolerance of the lump's position (m) between two solutions."""
 
-ROUNDS = 50
+MAX_SOLUTIONS = 50
 
 
 class MoorPyWire:
@@ -34,7 +34,7 @@ class MoorPyWire:
         moorpy: Any = peer('moorpy')
         self._error: type[Exception] = moorpy.helpers.Error
         self._system = moorpy.System(
-            depth=DEEP, rho=wire.density, g=wire.gravity, current=[-wire.speed, 0.0, 0.0]
+            depth=WATER_DEPTH_M, rho=wire.density, g=wire.gravity, current=[-wire.speed, 0.0, 0.0]
         )
         make = {
             'name': 'wire',
@@ -51,7 +51,7 @@ class MoorPyWire:
         self._lump = self._system.addPoint(
             0, start, m=wire.lump_mass, v=wire.lump_volume, fExt=[-drag, 0.0, 0.0]
         )
-        self._line = self._system.addLine(wire.length, make, nSegs=PARTS, pointA=2, pointB=1)
+        self._line = self._system.addLine(wire.length, make, nSegs=LINE_PIECES, pointA=2, pointB=1)
         self._system.initialize()
 
     def solve(self, length: float | None = None) -> WireSteadyState:
@@ -64,15 +64,15 @@ class MoorPyWire:
         """
         if length is not None:
             self._line.setL(length)
-        for _ in range(ROUNDS):
+        for _ in range(MAX_SOLUTIONS):
             before = np.array(self._lump.r)
             try:
-                self._system.solveEquilibrium(tol=0.1 * MOVED)
+                self._system.solveEquilibrium(tol=0.1 * POSITION_TOLERANCE_M)
             except self._error as error:
                 raise PeerFailed(
                     f'MoorPy found no equilibrium of the towed wire: {error}'
                 ) from None
-            if np.abs(self._lump.r - before).max() < MOVED:
+            if np.abs(self._lump.r - before).max() < POSITION_TOLERANCE_M:
                 x, _, z = self._lump.r
                 return WireSteadyState(float(-z), float(-x), float(np.linalg.norm(self._line.fB)))
-        raise PeerFailed(f'MoorPy still moves the towed wire after {ROUNDS} solutions')
+        raise PeerFailed(f'MoorPy still moves the towed wire after {MAX_SOLUTIONS} solutions')

@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.lab.reference_codes.history import History
 from trawl_ros.lab.reference_codes.lone_line import holding, loaded, lone_line, settled
-from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre
+from trawl_ros.lab.reference_codes.manoeuvre import History, WireManoeuvre
 from trawl_ros.lab.reference_codes.towed_wire import TowedWire, WireSteadyState
 from trawl_ros.model.assembly import block_forces
 from trawl_ros.model.gear_model import GearModel
@@ -21,7 +20,7 @@ TRACK_STEP = 0.1
 
 
 def own_model(wire: TowedWire, segments: int) -> GearModel:
-    """The wire cut into ``segments`` bars, with its lump."""
+    """Return the wire in ``segments`` bars, with its lump."""
     model = lone_line(
         {
             'diameter_m': wire.diameter,

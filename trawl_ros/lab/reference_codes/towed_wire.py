@@ -72,4 +72,4 @@ class WireSteadyState:
 
 
 INTEGRATED = WireSteadyState(depth=335.307, lag=498.191, tension=41_042.0)
-"""The steady state of `WIRE` from integrating the equation of an elastic wire."""
+"""Steady state of `WIRE` by integration of the equation of an elastic wire."""

@@ -1,1 +1,1 @@
-"""Records and pages that validation, benchmark and studies share."""
+"""Records and pages shared by validation, benchmark and studies."""

@@ -1,4 +1,4 @@
-"""Doubts about assumed numbers: how far one of them may be off, and what a point needs of it."""
+"""Factors on an assumed number that bring a point near its measured value."""
 
 import math
 from collections.abc import Mapping
@@ -6,8 +6,8 @@ from itertools import pairwise
 
 from trawl_ros.report.rendering import number
 
-STEPS = 4000
-"""Steps into which a range of factors is cut to look for those that a point needs."""
+SEARCH_STEPS = 4000
+"""Number of steps of a range of factors in this search."""
 
 
 def factors_needed(
@@ -33,11 +33,11 @@ def factors_needed(
     known = sorted((factor, value) for factor, value in values.items() if not math.isnan(value))
     good: list[list[float]] = []
     for (low, first), (high, second) in pairwise(known):
-        for step in range(STEPS + 1):
-            share = step / STEPS
+        for step in range(SEARCH_STEPS + 1):
+            share = step / SEARCH_STEPS
             factor = low + share * (high - low)
             inside = abs(first + share * (second - first) - measured) <= tolerance * measured
-            if inside and good and abs(good[-1][1] - factor) <= (high - low) / STEPS * 1.5:
+            if inside and good and abs(good[-1][1] - factor) <= (high - low) / SEARCH_STEPS * 1.5:
                 good[-1][1] = factor
             elif inside:
                 good.append([factor, factor])
@@ -48,7 +48,7 @@ def factors_needed(
 
 
 def need_in_words(values: Mapping[float, float], measured: float, tolerance: float) -> str:
-    """Factors that a point needs, in words; what was tried where none is enough."""
+    """Return the factors that a point needs in words, or that none of those tried is enough."""
     needed = factors_needed(values, measured, tolerance)
     if needed is None:
         return 'not enough'

@@ -12,7 +12,7 @@ CPU_INFO = Path('/proc/cpuinfo')
 
 
 def cpu_model() -> str:
-    """Name of the processor, as far as the system tells it."""
+    """Name of the processor, as the system reports it."""
     if CPU_INFO.is_file():
         for line in CPU_INFO.read_text().splitlines():
             key, _, value = line.partition(':')

@@ -114,7 +114,7 @@ class MeasuredValue:
 
     @property
     def ok(self) -> bool:
-        """True if the target is reached; true without one. NaN never reaches any."""
+        """True if the target is reached or there is none; NaN never reaches a target."""
         return self.target is None or self.value in self.target
 
     @property
@@ -124,11 +124,11 @@ class MeasuredValue:
 
     @property
     def figure(self) -> str:
-        """Value with its unit, in the digits that one reads."""
+        """Value with its unit, rounded for display."""
         return f'{number(self.value)} {self.unit}'.rstrip()
 
     def record(self) -> dict[str, object]:
-        """Return it as plain values; what could not be measured is null.
+        """Return it as plain values; unmeasured values are null.
 
         A target with a lower end is the pair of its ends.
         """

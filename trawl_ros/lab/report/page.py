@@ -15,7 +15,7 @@ from trawl_ros.report.rendering import page as filled
 
 @dataclass(frozen=True)
 class TextTable:
-    """Table of text; all rows as long as ``head``."""
+    """Table of text; every row is as long as ``head``."""
 
     caption: str
     head: tuple[str, ...]
@@ -24,7 +24,7 @@ class TextTable:
 
 @dataclass(frozen=True)
 class Findings:
-    """Findings of a case or benchmark. ``text`` is a paragraph of plain words for the report."""
+    """Findings of a case or benchmark; ``text`` is a paragraph for the report."""
 
     rows: tuple[MeasuredValue, ...]
     drawings: tuple[Drawing, ...] = ()
@@ -136,7 +136,7 @@ def write_page(
 
 
 def values_table(rows: Sequence[MeasuredValue]) -> TextTable:
-    """Table of values; columns that would be empty are left out."""
+    """Table of values without empty columns."""
     head = ('what', 'value', 'low', 'high', 'asked for', 'reached', 'note')
     cells = [
         (

@@ -1,4 +1,4 @@
-"""Instrument chain as processes."""
+"""Simulation, instruments and recorder as processes."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,7 +16,10 @@ MEGABYTE = 1e6
 def chain_parameters(
     node: str, scenario: Path, bag: Path, consumers: Sequence[str] = CONSUMERS
 ) -> dict[str, Value]:
-    """Parameters of a node of the chain: as fast as it goes, with truth waiting for consumers."""
+    """Return the parameters of a node of the chain, which runs at full speed.
+
+    The simulation waits for its consumers.
+    """
     if node == RECORDER:
         return {'use_sim_time': True, 'output': str(bag)}
     if node == SIMULATION:
@@ -59,7 +62,7 @@ def start_chain(
 
 
 def stop_chain(processes: Processes) -> None:
-    """Stop all nodes of the chain that run, sources before the recorder: it gets their last words.
+    """Stop all running nodes of the chain; the recorder is last and gets their last messages.
 
     Raises
     ------

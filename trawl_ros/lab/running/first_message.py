@@ -14,7 +14,7 @@ from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.qos import CONSUMER
 
 AT_REST_S = 0.5
-"""Time a subscriber is given to be found by what runs already."""
+"""Time for running nodes to discover the subscriber."""
 
 
 class FirstMessage:

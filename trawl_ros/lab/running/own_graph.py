@@ -1,4 +1,4 @@
-"""ROS domain of its own, so that two demos at once do not hear each other."""
+"""Separate ROS domain, so that two demos at the same time do not receive each other's messages."""
 
 import random
 import socket
@@ -46,7 +46,7 @@ def own_graph(logs: Path) -> Iterator[dict[str, str]]:
 
 
 def _silent(domain: int) -> bool:
-    """True if no other program's node is first in a domain, as far as ports tell."""
+    """True if the discovery port of the domain's first participant is free."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as port:
         return _binds(port, ('', FIRST_PORT + PORTS_PER_DOMAIN * domain))
 

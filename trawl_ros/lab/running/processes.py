@@ -1,4 +1,4 @@
-"""Processes of nodes: started, watched, and ended together."""
+"""Processes of nodes, which are started, watched and ended together."""
 
 import json
 import os
@@ -101,7 +101,7 @@ class Processes:
         return code == 0
 
     def ended(self) -> dict[str, str]:
-        """Return the last words of those that ended by themselves, which are watched no more."""
+        """Return the last output of nodes that ended by themselves, and stop watching them."""
         codes = {node: process.poll() for node, process in self._running.items()}
         over = {node: self._failure(node, code) for node, code in codes.items() if code is not None}
         for node in over:
@@ -119,7 +119,7 @@ class Processes:
         process.wait()
 
     def pids(self) -> dict[str, int]:
-        """Return the number of each process that has not been seen to end."""
+        """Return the process number of each node that is not known to have ended."""
         return {node: process.pid for node, process in self._running.items()}
 
     def stop(self, *nodes: str) -> None:
@@ -181,9 +181,9 @@ class Processes:
 
 @contextmanager
 def _born_deaf() -> Iterator[None]:
-    """Block SIGINT in a child until it unblocks it.
+    """Block SIGINT in a child until the child unblocks it.
 
-    An interpreter that is interrupted before its first line calls that a fatal error.
+    An interpreter that is interrupted before its first line reports a fatal error.
     """
     before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:

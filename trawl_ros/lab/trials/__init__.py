@@ -1,1 +1,1 @@
-"""Blind trials: effects hidden in a plant that is not the model, and scores of verdicts on them."""
+"""Blind cases: effects hidden in a plant that differs from the model, and scores of verdicts."""

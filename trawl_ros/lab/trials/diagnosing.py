@@ -18,7 +18,7 @@ from trawl_ros.records.topics import NAMESPACE
 
 
 def write_windows(path: Path, windows: Sequence[SteadyWindow]) -> None:
-    """Write windows, whole or not at all."""
+    """Write windows completely or not at all."""
     write_json(path, [asdict(window) for window in windows])
 
 
@@ -32,8 +32,18 @@ def read_windows(path: Path) -> tuple[SteadyWindow, ...]:
 
 @dataclass(frozen=True)
 class DiagnosisTask:
-    """Case of a blind diagnosis: visible data, file of the result, gear file as it is known aboard,
-    and how many of the first tows are a baseline.
+    """Case of a blind diagnosis.
+
+    Attributes
+    ----------
+    seen
+        Visible data.
+    diagnosis
+        File of the result.
+    gear
+        Gear file as it is known aboard.
+    baseline
+        Number of first tows that form the baseline.
     """
 
     seen: Path
@@ -43,7 +53,7 @@ class DiagnosisTask:
 
 
 def diagnose_case(case: DiagnosisTask) -> str:
-    """Diagnose, write the diagnosis, and give its verdict."""
+    """Diagnose, write the diagnosis, and return its verdict."""
     gear = load_gear(case.gear)
     windows, tows = _of_bags(case.seen, gear) if case.seen.is_dir() else _of_file(case.seen)
     found = diagnose_windows(gear, windows, tows, frozenset(range(case.baseline)))

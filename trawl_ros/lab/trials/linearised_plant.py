@@ -1,4 +1,4 @@
-"""Plants of the trials, the models fitted to them, and what drawn boards show."""
+"""Plants of the blind cases, the models fitted to them, and the observables of drawn boards."""
 
 from dataclasses import dataclass
 from itertools import chain
@@ -52,8 +52,10 @@ class MeshResolution:
 
 @dataclass(frozen=True)
 class LinearisedState:
-    """Steady state of the plant: observables (22,) and their sensitivities (22, 3) to both
-    warp lengths and speed, and (22, 12) to the coefficients.
+    """Steady state of the plant, linearised.
+
+    ``values`` are the observables (22,). ``by_inputs`` (22, 3) is their Jacobian for both warp
+    lengths and speed, ``by_coefficients`` (22, 12) that for the coefficients.
     """
 
     state: State

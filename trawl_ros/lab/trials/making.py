@@ -1,4 +1,4 @@
-"""Construction of trials: visible data, and the key."""
+"""Construction of blind cases: visible data, and the key."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -38,10 +38,10 @@ from trawl_ros.solver.stepper import StepFailed
 from trawl_ros.solver.trimming.drawn_board import fastened_as
 
 WRONG_BY = 0.3
-"""Noise and biases of each kind of sensor are larger or smaller than stated by this part."""
+"""Relative deviation of the true noise and biases of each sensor from the stated ones."""
 
 DROPOUTS = 0.02
-"""Part of the means that are missing of windows in which a channel fell silent."""
+"""Share of missing means, in windows in which a channel fell silent."""
 
 LENGTH_JITTER, SPEED_JITTER, HOURS_JITTER = 4.0, 0.02, 0.05
 """Std of how far (m, m/s, h) states are from the plan."""
@@ -57,7 +57,7 @@ class SeededTrial:
     sensors: Sensors
 
     def towed(self, plan: BlindTrialPlan) -> tuple[tuple[LinearisedState, ...], ...] | None:
-        """Tows of the plant, or None if it cannot be towed."""
+        """Return the tows of the plant, or None if it cannot be towed."""
         try:
             return self.plant.towed(self.effects, plan)
         except NoSteadyState:
@@ -73,7 +73,7 @@ class TrialData:
 
 
 def hide(spec: Spec, gear: str, cut: MeshResolution, seed: int) -> SeededTrial:
-    """Hide the wanted effects, if that is possible."""
+    """Hide the wanted effects if possible."""
     shape = chance_of(spec, seed)
     plant = _plant(gear, cut, seed, spec.plant)
     likely = likelihood_of(gear, cut, seed, spec.plant, spec.plan)
@@ -109,7 +109,7 @@ def chance_of(spec: Spec, seed: int, what: str = '') -> np.random.Generator:
 
 
 def make(spec: Spec, gear: str, cut: MeshResolution, seed: int) -> tuple[Key, TrialData | None]:
-    """Make a trial of windows, or say in its key why it cannot be made."""
+    """Make a case of windows, or state in its key why it cannot be made."""
     hiding, plan = hide(spec, gear, cut, seed), PLANS[spec.plan]
     if not hiding.key.testable:
         return hiding.key, None
@@ -131,7 +131,7 @@ def _quiet(window: SteadyWindow, look: LinearisedState) -> SteadyWindow:
 def floor_of(
     windows: Sequence[SteadyWindow], looks: Sequence[LinearisedState], baseline: int
 ) -> dict[str, float]:
-    """Errors that the plant itself would have on the windows that are kept back, by channel."""
+    """Return the plant's own errors by channel, on the windows held out of the fit."""
     kept_back = {window.index for window in split(windows, frozenset(range(baseline))).kept_back}
     errors: dict[str, list[float]] = {}
     for window, look in zip(windows, looks, strict=True):
@@ -218,7 +218,7 @@ def _plant(gear: str, cut: MeshResolution, seed: int, number: int) -> Plant:
 
 
 def gear_aboard(gear: str, cut: MeshResolution, seed: int, number: int) -> GearRecord:
-    """Gear of a plant as it is known aboard: boards fastened as they are, and no more."""
+    """Return the gear of a plant as known aboard: only the fastening points are the true ones."""
     return fastened_as(cut.model(gear), _plant(gear, cut, seed, number).model.gear)
 
 
@@ -235,7 +235,7 @@ FOLLOWED = 'followed'
 
 
 def proposed(diagnosis: Mapping[str, Any]) -> PlannedTow | None:
-    """Next tow by a diagnosis; None where it proposes none."""
+    """Return the next tow that a diagnosis proposes, or None."""
     for step in diagnosis['next_tow']:
         if step['states']:
             states = tuple((state['warp_length'], state['speed']) for state in step['states'])
@@ -251,7 +251,7 @@ def tow_on(
     windows: Sequence[SteadyWindow],
     tow: PlannedTow,
 ) -> tuple[Key, tuple[SteadyWindow, ...] | None]:
-    """Add a tow to the windows of a trial, or say in the key why it cannot be towed."""
+    """Add a tow to the windows of a case, or state in the key why it cannot be towed."""
     hiding = hide(spec, gear, cut, seed)
     key = replace(hiding.key, spec=replace(spec, series=FOLLOWED))
     plan = BlindTrialPlan((tow,), baseline=0)
@@ -270,7 +270,7 @@ def tow_on(
 
 
 def make_bags(spec: Spec, gear: str, cut: MeshResolution, seed: int, folder: Path) -> Key:
-    """Make a trial as bags in a folder, unless what is hidden is not possible."""
+    """Make a case as bags in a folder, unless its hidden effect is not possible."""
     hiding = hide(spec, gear, cut, seed)
     if not hiding.key.testable:
         return hiding.key

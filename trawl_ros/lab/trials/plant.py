@@ -27,11 +27,13 @@ from trawl_ros.solver.slow_mode import slow_mode
 from trawl_ros.solver.trimming.drawn_board import BoardDraw, draw_board
 
 FINER = MeshResolution(around=12, lines=2, unjoined=True)
-"""Meshes of the plant and of the model of blind trials."""
+"""Mesh resolution of plant and model of blind cases."""
 
 DRAW = BoardDraw(std_factor=0.5)
-"""Boards are drawn with half of the prior's std: the gear is known as well as from its drawing and
-an earlier trial."""
+"""Boards are drawn with half of the prior's std.
+
+This corresponds to a gear known from its drawing and an earlier trial.
+"""
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class Clean:
 
 @dataclass(frozen=True)
 class Plant:
-    """Plant with a board of its own, and its states without hidden effects."""
+    """Plant with its own board, and its states without hidden effects."""
 
     model: GearModel
     coefficients: FloatArray

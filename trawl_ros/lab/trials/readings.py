@@ -1,4 +1,4 @@
-"""Windows of a plant from instruments: correlated noise, and calibration errors of a tow."""
+"""Windows of a plant from instruments, with correlated noise and calibration errors per tow."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,13 +16,14 @@ from trawl_ros.lab.trials.linearised_plant import LinearisedState
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 
 CORRELATION_S = 15.0
-"""Correlated noise of a reading has lost all but 1/e after this time."""
+"""Correlation time of the noise, after which 1/e remains."""
 
 
 @dataclass(frozen=True)
 class SensorKind:
-    """Kind of sensor: readings per second, and the standard deviations of their white and
-    their correlated noise.
+    """Readings per second of a kind of sensor, and the standard deviations of its noise.
+
+    The noise has a ``white`` and a ``correlated`` part.
     """
 
     rate_hz: float
@@ -52,7 +53,7 @@ class SensorKind:
         return float(np.sqrt(self.white**2 / self.number + correlated))
 
     def noise(self, rng: np.random.Generator, number: int | None = None) -> FloatArray:
-        """Errors (n,) of so many readings, those of a window if None."""
+        """Return errors (n,) of a number of readings, by default of one window."""
         drawn = rng.standard_normal(self.number if number is None else number)
         drawn[1:] *= np.sqrt(1.0 - self.lag**2)
         slow = lfilter([1.0], [1.0, -self.lag], drawn)
@@ -84,8 +85,10 @@ NAMES = (*SENSED, *INPUTS)
 
 @dataclass(frozen=True)
 class Sensors:
-    """Sensors: factors of the true noise and biases of each quantity over the stated ones, and the
-    part of a bias that changes with the state as `Scheme` has it.
+    """Sensors of a trial.
+
+    ``factors`` multiply the stated noise and biases of each quantity. ``state_share`` is the part
+    of a bias that changes with the state, as in `Scheme`.
     """
 
     factors: Mapping[str, float]
@@ -107,11 +110,11 @@ class Sensors:
 
 AS_STATED = Sensors(dict.fromkeys(KINDS, 1.0))
 SAME_IN_ALL_STATES = replace(AS_STATED, state_share=0.0)
-"""As stated, but for what changes with the state."""
+"""Sensors as stated, without errors that change with the state."""
 
 
 def wrong_by(part: float, rng: np.random.Generator) -> Sensors:
-    """Return sensors each of which is either worse or better than stated by this share."""
+    """Return sensors that are each either worse or better than stated by this share."""
     return Sensors({name: 1.0 + part * rng.choice((-1.0, 1.0)) for name in KINDS})
 
 

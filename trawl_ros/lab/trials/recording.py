@@ -1,4 +1,4 @@
-"""Bags of a trial: samples of a tow with the instruments' errors."""
+"""Bags of a blind case: samples of a tow with the instruments' errors."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -28,10 +28,10 @@ from trawl_ros.records.samples import (
 from trawl_ros.records.topics import absolute
 
 SILENT_S = 90.0
-"""A channel that falls silent does so for this long before and after a state is looked at."""
+"""Time before and after the planned instant of a state during which a channel is silent."""
 
 CURRENT = 0.2
-"""Std (m/s) of the current that GPS sees beside the log."""
+"""Std (m/s) of the current between GPS and log."""
 
 HEADING_STD = 0.01
 GROUND_STD = 0.03
@@ -138,7 +138,7 @@ def _samples(found: dict[str, Readings], water: Water) -> Iterator[Sample]:
 
 
 def _together(first: Readings, second: Readings) -> Iterator[tuple[float, float, float]]:
-    """Readings of one message; where one is missing, so is the message."""
+    """Return the readings of one message; if one is missing, there is no message."""
     common, here, there = np.intersect1d(first[0], second[0], return_indices=True)
     yield from zip(common, first[1][here], second[1][there], strict=True)
 

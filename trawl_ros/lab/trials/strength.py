@@ -1,7 +1,7 @@
 """Detectable size of a hidden effect, from the plant's own likelihood.
 
-The plant, linearised around its board, says how what the effect changes compares with the errors of
-the instruments and with what coefficients could mimic. No detector has part in it.
+The plant is linearised around its board. The change by the effect is compared with the errors of
+the instruments, and with what the coefficients could reproduce. No detector is used.
 """
 
 from collections.abc import Sequence
@@ -31,16 +31,16 @@ from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
 ALARM = 0.01 / 30.0
-"""Probability at which one of some thirty looks is an alarm, so that all of them are one in 1 %."""
+"""False-alarm probability of each of about thirty tests, for 1 % over all of them."""
 
 SIGMAS = float(norm.isf(0.5 * ALARM)) + POWER
-"""An effect this many standard deviations strong is seen in 80 % of trials."""
+"""Strength in standard deviations that is detected in 80 % of cases."""
 
 MAX_PROBES = 10
-"""Of probing with a size near the one that is wanted, at most."""
+"""Largest number of probes near the wanted size."""
 
-CLOSE = 0.05
-"""Part of a size by which it may be off."""
+SIZE_TOLERANCE = 0.05
+"""Relative tolerance of a size."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Likelihood:
             if seen <= 0.0:
                 return np.inf
             wanted = size * SIGMAS / seen
-            close = abs(wanted / size - 1.0) < CLOSE
+            close = abs(wanted / size - 1.0) < SIZE_TOLERANCE
             if close or hidden.whole or (wanted > most and np.isinf(high)):
                 return float(wanted)
             if wanted > size:

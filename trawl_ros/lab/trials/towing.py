@@ -1,4 +1,4 @@
-"""Simulation of planned tows: the gear hauled, veered and left to settle."""
+"""Simulation of planned tows: the gear is hauled, veered and left to reach a steady state."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,15 +19,13 @@ from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.simulation import Instant, Simulation, tow_of
 
 HOLD_S = 90.0
-"""A state is held so long after the moment for which it is planned, so that one window or two are
-found.
-"""
+"""Time for which a state is kept after its planned instant; one or two windows fit into it."""
 
 AWAY_M = 150.0
-"""Warps are so much shorter when a tow begins: before the first state nothing is steady."""
+"""Shorter warp at the beginning of a tow, so that nothing is steady before the first state."""
 
 EARLY_S = 60.0
-"""And reached so much earlier than it would have to be."""
+"""Time by which a state is reached before it is needed."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +69,7 @@ def settling_time(length: float, speed: float) -> float:
 
 
 def quasi_steady(tow: PlannedTow, looks: Sequence[LinearisedState]) -> Course:
-    """Quasi-steady course: one steady state after the other, also between them."""
+    """Return a quasi-steady course: one steady state after another, also in between."""
     length, speed = looks[0].state
     shooting = replace(looks[0], state=(length - AWAY_M, speed))
     times, rows, moments = [0.0], [shooting], []
@@ -91,7 +89,7 @@ def quasi_steady(tow: PlannedTow, looks: Sequence[LinearisedState]) -> Course:
 
 
 HAULING_SPEED = 2.4
-"""Warps are hauled and paid out at this speed (m/s): at less, boards lose their lift meanwhile."""
+"""Towing speed while hauling and veering, m/s; at a lower one boards lose their lift."""
 
 PERIOD_S, SEEN_S = 0.25, 1.0
 """Of the simulation, and how often it is looked at."""
@@ -143,7 +141,7 @@ def hidden_effect_set(effects: Sequence[tuple[Hidden, float]]) -> EffectSet:
 def towed_in_time(
     model: GearModel, tow: PlannedTow, effects: Sequence[tuple[Hidden, float]]
 ) -> Course:
-    """Tow the states of a tow one after the other.
+    """Tow the states of a tow one after another.
 
     Raises
     ------
@@ -185,7 +183,7 @@ def towed_in_time(
 
 
 def _shown(now: Instant, there: EffectSet, heading: float, hours: float) -> FloatArray:
-    """Indicated inputs by fixed-point iteration, from the true ones."""
+    """Return the indicated inputs from the true ones, by fixed-point iteration."""
     towed = np.array([now.winches[0].length, now.winches[1].length, now.ship.speed])
     shown = towed
     for _ in range(FIXED_POINT_ITERATIONS):

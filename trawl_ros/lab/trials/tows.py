@@ -1,4 +1,4 @@
-"""Planned trials: their steady states, courses and times."""
+"""Planned cases: their steady states, courses and times."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ State = tuple[float, float]
 
 HOURS_APART = 0.5
 FIRST_HOURS = 0.4
-"""Into the tow the first state is reached, and another after each half hour."""
+"""Time of the first state in a tow; another one follows every half hour."""
 
 _ONE: tuple[State, ...] = ((300.0, 2.4), (550.0, 2.0), (800.0, 2.2), (450.0, 2.4), (550.0, 2.2))
 _TWO: tuple[State, ...] = ((450.0, 2.0), (300.0, 2.2), (650.0, 2.4), (900.0, 2.2), (450.0, 2.2))
@@ -56,14 +56,16 @@ FULL = BlindTrialPlan(
     ),
     baseline=2,
 )
-"""The states of a tow come early in one and late in another, on both courses."""
+"""Plan with two courses, in which each state comes early in one tow and late in another."""
 
 _ALIKE: tuple[State, ...] = ((550.0, 2.0), (550.0, 2.2), (550.0, 2.4))
 POOR = BlindTrialPlan(
     (*FULL.tows[:2], *(PlannedTow(_ALIKE, eastward=True) for _ in range(3))), baseline=2
 )
-"""With the suspect gear nobody turned round or changed the length of the warps, so that there is
-much that such tows cannot tell apart."""
+"""Plan in which the suspect gear was towed on one course with one warp length.
+
+Such tows leave many causes indistinguishable.
+"""
 
 _FISHING: tuple[State, ...] = ((450.0, 2.2), (650.0, 2.4), (650.0, 2.0))
 _DEEPER: tuple[State, ...] = ((550.0, 2.4), (800.0, 2.2), (450.0, 2.0))
@@ -87,7 +89,7 @@ SEA: Mapping[str, BlindTrialPlan] = {
         baseline=1,
     ),
 }  # fmt: skip
-"""Trials of a day as skippers tow: some hours, few states, with a baseline or without."""
+"""Plans of a day at sea: some hours and few states, with or without a baseline."""
 
 PLANS: Mapping[str, BlindTrialPlan] = {'full': FULL, 'poor': POOR, **SEA}
 
@@ -97,6 +99,6 @@ STATES = tuple(
 
 
 def nearest(state: State, known: tuple[State, ...]) -> State:
-    """The state most like another."""
+    """Return the state most similar to another one."""
     away = [abs(other[0] / state[0] - 1.0) + abs(other[1] / state[1] - 1.0) for other in known]
     return known[int(np.argmin(away))]

@@ -1,4 +1,4 @@
-"""Records of a blind trial: its specification, its key, and its diagnosis."""
+"""Records of a blind case: its specification, its key, and its diagnosis."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -55,9 +55,9 @@ class Spec:
 
 @dataclass(frozen=True)
 class Key:
-    """Key of a trial: its hidden effects, ``testable`` or not; read by the scorer alone.
+    """Key of a case: its hidden effects, ``testable`` or not; only the scorer reads it.
 
-    ``floor`` are errors, by channel, that the plant itself would have on what is kept back.
+    ``floor`` are the plant's own errors by channel, on the windows held out of the fit.
     """
 
     spec: Spec
@@ -70,7 +70,7 @@ class Key:
     floor: Mapping[str, float]
 
     def record(self) -> dict[str, Any]:
-        """As JSON has it; sizes that are infinite are null."""
+        """Return it as plain values; infinite sizes are null."""
         record = asdict(self)
         for name in ('sizes', 'detectable'):
             record[name] = [value if np.isfinite(value) else None for value in record[name]]

@@ -1,6 +1,6 @@
-"""Verdicts on a trial against its hidden effects.
+"""Verdicts on a blind case against its hidden effects.
 
-Of a trial only its key and ``diagnosis.json`` are known here.
+Only the key and ``diagnosis.json`` of a case are used here.
 """
 
 from collections.abc import Iterable, Mapping
@@ -16,10 +16,10 @@ from trawl_ros.lab.trials.strength import Likelihood
 from trawl_ros.lab.trials.trial import Scored
 
 MOST_OF_THREE = 2
-"""So many of three effects at once are to be found."""
+"""Number of effects to find out of three at once."""
 
 Classes = Mapping[str, tuple[str, ...]]
-"""Names as good as each effect's own, fixed before any trial is made."""
+"""Names accepted for each effect, fixed before any case is made."""
 
 
 def names_of(trial: Scored) -> set[str]:
@@ -28,7 +28,7 @@ def names_of(trial: Scored) -> set[str]:
 
 
 def reported(trial: Scored) -> set[str]:
-    """All effects, and changes of the gear file, that are not excluded."""
+    """Return all effects, and changes of the gear file, that are not excluded."""
     alike = {name for effect in said_of(trial)['effects'] for name in effect['class']}
     return names_of(trial) | alike | set(said_of(trial)['ambiguous_with']) | _changes(trial)
 
@@ -63,13 +63,15 @@ def verdict_word(trial: Scored) -> str:
 
 
 def right(trial: Scored, names: set[str], classes: Classes) -> bool:
-    """True if all hidden effects are among names, by their own or that of their class."""
+    """True if every hidden effect is named, by its own name or that of its class."""
     return all(names & right_names(name, classes) for name in hidden_names(trial))
 
 
 def right_names(hidden: str, classes: Classes) -> set[str]:
-    """Names that count as right for what is hidden: its own, or that of its cause; with classes,
-    and changes of the gear file that are the cause.
+    """Names that count as right for a hidden effect.
+
+    These are its own name or that of its cause, all of the same class, and the changes of the gear
+    file that are the cause.
     """
     own = RIGHT_NAMES.get(hidden, (hidden,))
     alike = (other for name in own for other in classes.get(name, ()))
@@ -77,7 +79,7 @@ def right_names(hidden: str, classes: Classes) -> set[str]:
 
 
 def named_right(trial: Scored, classes: Classes) -> bool:
-    """True if there is one name, and the right one."""
+    """True if exactly one effect is named, and it is right."""
     alone = len(said_of(trial)['effects']) == 1
     return verdict_word(trial) == 'NAMED' and alone and right(trial, names_of(trial), classes)
 
@@ -89,7 +91,7 @@ def both_named(trial: Scored, classes: Classes) -> bool:
 
 
 def one_named(trial: Scored, classes: Classes) -> bool:
-    """True if two effects are hidden and one of them is named, without any that is not there."""
+    """True if one of two hidden effects is named, and no absent one."""
     names = names_of(trial)
     pair = trial.key['spec']['series'] == 'pair' and not both_named(trial, classes)
     return (
@@ -101,7 +103,7 @@ def one_named(trial: Scored, classes: Classes) -> bool:
 
 
 def found_of_three(trial: Scored, classes: Classes) -> bool:
-    """True if at least two of three hidden effects are named, and none that is not there."""
+    """True if at least two of three hidden effects are named, and no absent one."""
     names = names_of(trial)
     hidden = hidden_names(trial)
     found = [name for name in hidden if names & right_names(name, classes)]
@@ -110,7 +112,7 @@ def found_of_three(trial: Scored, classes: Classes) -> bool:
 
 
 def wrong_named(trial: Scored, classes: Classes) -> bool:
-    """True if anything is named that is not there."""
+    """True if an absent effect is named."""
     there = {own for name in hidden_names(trial) for own in right_names(name, classes)}
     return verdict_word(trial) == 'NAMED' and not names_of(trial) <= there
 
@@ -133,23 +135,21 @@ def same_said(trial: Scored, other: Scored) -> bool:
 
 
 def parted(trial: Scored) -> bool:
-    """True if one effect alone is left, and the right one."""
+    """True if only the right effect is left."""
     return verdict_word(trial) == 'NAMED' and reported(trial) == set(hidden_names(trial))
 
 
 def checked(trial: Scored, classes: Classes) -> bool:
-    """True if the right effect is among those left, and all of these but one have a check that
-    needs no tow.
-    """
+    """True if the right effect is left, and all those left but one have a check without a tow."""
     left = reported(trial) & set(catalogue())
     unchecked = [name for name in left if not catalogue()[name].direct]
     return right(trial, left, classes) and len(unchecked) <= 1
 
 
 def classes(likely: Likelihood) -> Mapping[str, tuple[str, ...]]:
-    """Each effect of the catalogue with all that can do what any of its parameters does alone.
+    """Return for each effect all effects that any of its parameters can imitate.
 
-    To first order, by cosines above `ALIKE` for the plan of the trial.
+    This is to first order, by cosines above `ALIKE` for the plan of the case.
     """
     found = likely.mimicry
     blocks = list(zip(likely.wanted, values_vector(likely.wanted).blocks('effect'), strict=True))

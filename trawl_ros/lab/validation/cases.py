@@ -34,7 +34,7 @@ SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         'tank': ('flume',),
     }
 )
-"""Sub-package of `trawl_ros.lab.validation` → its modules, each with a ``CASE`` of that name."""
+"""Modules by sub-package of `trawl_ros.lab.validation`; each has a ``CASE`` of its name."""
 
 TITLES: Mapping[str, str] = MappingProxyType(
     {
@@ -54,7 +54,7 @@ TITLES: Mapping[str, str] = MappingProxyType(
 class ValidationCase:
     """Case: a name for the command line, a title, and the function that runs it.
 
-    ``run(small)`` does it; with ``small`` in seconds and on less, for the test suite.
+    ``run(small)`` runs it; ``small`` is a version for the test suite, which takes seconds.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Validation of the model: cases run several at a time, each in its own process, and reported."""
+"""Validation of the model: runs cases in parallel, each in its own process, and reports them."""
 
 import multiprocessing
 import re
@@ -19,7 +19,7 @@ from trawl_ros.report.pictures import draw
 PROCESS = multiprocessing.get_context('spawn')
 
 LONG = ('steady_states', 'sentences', 'board_frame', 'hauls', 'flume')
-"""Cases that take minutes, and are started first so that none is left over at the end."""
+"""Cases that take minutes; they start first so that none is left over at the end."""
 
 COMMAND = 'trawl validate'
 
@@ -101,7 +101,7 @@ def validate(
 def run_cases(
     names: Sequence[str], folder: Path, *, small: bool, workers: int
 ) -> Iterator[Section]:
-    """Run cases and give each as it ends; figures go into ``folder``/figures."""
+    """Run cases and yield each as it ends; figures go into ``folder``/figures."""
     with ThreadPoolExecutor(workers) as threads:
         first = sorted(names, key=lambda name: name not in LONG)
         pending = [threads.submit(_apart, name, folder, small) for name in first]
@@ -113,7 +113,7 @@ def run_cases(
 
 
 def _apart(name: str, folder: Path, small: bool) -> Section:
-    """Run one case in a process of its own, which a crash of a reference code ends alone."""
+    """Run one case in its own process, so that a crash of a reference code ends only that case."""
     with ProcessPoolExecutor(1, mp_context=PROCESS) as process:
         try:
             return process.submit(run_case, name, folder, small=small).result()
@@ -122,9 +122,9 @@ def _apart(name: str, folder: Path, small: bool) -> Section:
 
 
 def run_case(name: str, folder: Path, *, small: bool) -> Section:
-    """Run one case here and draw its figures.
+    """Run one case in this process and draw its figures.
 
-    A case whose model has no answer is a case that fails, not the end of the report.
+    If the model has no solution, the case fails and the report continues.
     """
     began = time.perf_counter()
     try:
@@ -159,7 +159,7 @@ def _section(name: str, findings: Findings, seconds: float, folder: Path = Path(
 
 
 def check_record(check: MeasuredValue) -> dict[str, object]:
-    """One check as plain values; what could not be measured is null."""
+    """Return one check as plain values; unmeasured values are null."""
     assert check.target is not None
     return {
         'what': check.what,

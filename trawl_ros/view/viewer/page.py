@@ -1,7 +1,7 @@
-"""Page of the viewer, which a browser lets speak to the data of the tow and to nobody else.
+"""Page of the viewer, which may connect only to the data of the tow.
 
-As Rerun serves it, it sends usage statistics and asks for news and a font, and nothing switches
-that off. A browser keeps to the policy that comes with a page, whatever the page would do.
+Rerun's own page sends usage statistics and requests news and a font, and has no setting against
+this. A browser enforces the policy that comes with a page, whatever the page does.
 """
 
 import os
@@ -29,7 +29,7 @@ POLICY = (
     "worker-src 'self' blob:; connect-src 'self' data: blob: http://*:{data}; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-"""Policy of the page; a browser may know this machine by any name."""
+"""Content security policy of the page; a browser may use any name of this machine."""
 
 
 class Page:
@@ -89,7 +89,7 @@ class Page:
 
 
 class _Server(ThreadingMixIn, TCPServer):
-    """Server of HTTP that asks no name server for its own name."""
+    """HTTP server that does not look up its own name."""
 
     allow_reuse_address = True
     daemon_threads = True
@@ -114,11 +114,11 @@ class _Handler(SimpleHTTPRequestHandler):
         super().end_headers()
 
     def log_message(self, *_: Any) -> None:
-        """Say nothing of requests."""
+        """Log nothing about requests."""
 
 
 def _copy(files: Path, folder: Path, environment: Mapping[str, str]) -> None:
-    """Have Rerun serve its page to this process alone, for as long as that takes."""
+    """Let Rerun serve its page to this process alone, until it is copied."""
     page, data = two_ports(THIS_MACHINE, None)
     arguments = [
         *('--bind', THIS_MACHINE, '--port', str(data)),

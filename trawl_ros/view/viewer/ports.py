@@ -32,7 +32,7 @@ def family_of(bind: str) -> socket.AddressFamily:
 
 
 def reached(bind: str) -> str:
-    """Host by which this machine reaches an address on which it listens."""
+    """Host name by which this machine reaches an address on which it listens."""
     address = ipaddress.ip_address(bind)
     if not address.is_unspecified:
         return bind
@@ -40,12 +40,12 @@ def reached(bind: str) -> str:
 
 
 def in_url(host: str) -> str:
-    """Host as a URL has it."""
+    """Host in the form of a URL."""
     return f'[{host}]' if ':' in host else host
 
 
 def two_ports(bind: str, wanted: int | None) -> tuple[int, int]:
-    """Find two ports that are free, one after the other where the first is wanted.
+    """Find two free ports; if the first one is given, the second one is the next.
 
     Raises
     ------

@@ -20,7 +20,7 @@ NEEDS = 'a display and graphics that work, or --web, or --out FILE.rrd'
 
 
 class ViewerFailed(TrawlError):
-    """Viewer that cannot be opened, or that ended when it should not have."""
+    """Viewer that cannot be opened, or that ended unexpectedly."""
 
 
 class RerunProcess:
@@ -66,7 +66,7 @@ class RerunProcess:
         return self._process.poll() is None
 
     def check(self) -> None:
-        """Check that it did not end by itself because of an error.
+        """Raise an error if it ended by itself with an error.
 
         Raises
         ------
@@ -77,7 +77,7 @@ class RerunProcess:
             raise ViewerFailed(f'the viewer has ended: {self._last_words()}; expected {NEEDS}')
 
     def wait(self, seconds: float) -> None:
-        """Wait until it is closed, at most so long."""
+        """Wait until it is closed, at most this long."""
         try:
             self._process.wait(seconds)
         except subprocess.TimeoutExpired:
@@ -133,7 +133,7 @@ class RerunProcess:
 def _silent(environment: Mapping[str, str], folder: Path) -> dict[str, str]:
     """Return the environment of a viewer whose usage statistics are off, whatever the user's are.
 
-    They are switched in the user's configuration alone, so this one has a configuration of its own.
+    Only the user's configuration can switch them off, so this viewer has its own configuration.
     """
     private = {'XDG_CONFIG_HOME': str(folder), 'XDG_DATA_HOME': str(folder)}
     subprocess.run(

@@ -1,4 +1,4 @@
-"""Import of Rerun, with a clear sentence where it is not installed."""
+"""Import of Rerun, with a clear error if it is not installed."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from trawl_ros.core.errors import TrawlError
 
 
 class ViewerAbsent(TrawlError):
-    """Rerun is not installed."""
+    """Error: Rerun is not installed."""
 
 
 try:

@@ -1,4 +1,4 @@
-"""Viewer of Rerun: its window, or its page in a browser, bound to this machine unless asked."""
+"""Viewer of Rerun: its window, or its page in a browser; by default for this machine only."""
 
 import os
 from collections.abc import Mapping
@@ -76,7 +76,7 @@ class Viewer:
         ]
 
     def _origins(self) -> list[str]:
-        """Let the page be opened by whatever name this machine has elsewhere."""
+        """Allow the page to be opened by any name of this machine."""
         if is_this_machine(self._bind):
             return []
         return ['--cors-allow-origin', f'http://*:{self._page_port}']
@@ -92,7 +92,7 @@ class Viewer:
         return self._process.running
 
     def check(self) -> None:
-        """Check that it did not end by itself because of an error.
+        """Raise an error if it ended by itself with an error.
 
         Raises
         ------
@@ -102,7 +102,7 @@ class Viewer:
         self._process.check()
 
     def wait(self, seconds: float) -> None:
-        """Wait until it is closed, at most so long."""
+        """Wait until it is closed, at most this long."""
         self._process.wait(seconds)
 
     def __enter__(self) -> 'Viewer':

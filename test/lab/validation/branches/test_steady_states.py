@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.lab.validation.branches.collapsed_starts import (
+from trawl_ros.lab.validation.branches.continuation import Place, Search, continue_branches, judged
+from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
+from trawl_ros.lab.validation.branches.lattices import Lattice, speed_lattice
+from trawl_ros.lab.validation.branches.steady_states import (
+    CASE,
     collapsed_shapes,
     tally,
     turned_boards,
 )
-from trawl_ros.lab.validation.branches.continuation import Place, Search, continue_branches, judged
-from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
-from trawl_ros.lab.validation.branches.lattices import Lattice, speed_lattice
-from trawl_ros.lab.validation.branches.steady_states import CASE
 from trawl_ros.lab.validation.run import check_record
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium

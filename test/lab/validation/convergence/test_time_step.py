@@ -5,8 +5,12 @@ import json
 import numpy as np
 import pytest
 
-from trawl_ros.lab.validation.convergence.manoeuvres import SteppedManoeuvre, smooth_tow
-from trawl_ros.lab.validation.convergence.time_step import CASE, convergence
+from trawl_ros.lab.validation.convergence.time_step import (
+    CASE,
+    SteppedManoeuvre,
+    convergence,
+    smooth_tow,
+)
 from trawl_ros.lab.validation.run import check_record
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trawl_ros.lab.validation.paper.point_board import point_board, point_observables
+from trawl_ros.lab.validation.paper.comparison import point_board, point_observables
 from trawl_ros.model.assembly import board_loads, forces
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.state import State

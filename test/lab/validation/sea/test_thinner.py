@@ -5,8 +5,7 @@ import pytest
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.validation.sea.published import HaulRecord
-from trawl_ros.lab.validation.sea.thinner import ThinnerRecord
+from trawl_ros.lab.validation.sea.published import HaulRecord, ThinnerRecord
 
 
 def rigged(gear: GearRecord, change: ThinnerRecord) -> GearRecord:

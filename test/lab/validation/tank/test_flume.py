@@ -10,7 +10,7 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.validation.tank import flume
 from trawl_ros.lab.validation.tank.doubts import DOUBTS, Doubted, doubts_table
 from trawl_ros.lab.validation.tank.flume import TABLE, Compared, checks, exponent, further_table
-from trawl_ros.lab.validation.tank.held import PRECISE, held, led_to
+from trawl_ros.lab.validation.tank.held import HEIGHT_TOLERANCE_M, held, led_to
 from trawl_ros.lab.validation.tank.states import BRIDLE, SHACKLE, FlumeState, read_states
 
 TEXT = """\
@@ -59,7 +59,7 @@ def coarse():
 def test_the_footrope_lies_on_the_floor_which_pushes_and_does_not_pull(coarse):
     net = held(coarse, STATE)
     seen = net.found.observables
-    assert seen.net_depth + seen.vertical_opening == pytest.approx(0.2, abs=PRECISE)
+    assert seen.net_depth + seen.vertical_opening == pytest.approx(0.2, abs=HEIGHT_TOLERANCE_M)
     assert 0.0 < net.floor < 25.0 * 34.1
     assert 0.0 < net.wing_height < net.height + 0.1
     assert net.lower_spread > net.spread

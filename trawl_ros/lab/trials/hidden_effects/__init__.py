@@ -1,1 +1,1 @@
-"""Effects that are hidden in blind trials, in the catalogue and outside of it."""
+"""Effects hidden in blind cases, inside and outside the catalogue."""

@@ -1,6 +1,6 @@
-"""Hidden effects that the catalogue should name, richer than the forms it knows.
+"""Hidden effects that the catalogue should name, in richer forms than its own.
 
-Each takes a random generator and gives an effect whose shape is drawn by it.
+Each function takes a random generator and returns an effect of a random shape.
 """
 
 from collections.abc import Callable, Mapping
@@ -23,7 +23,7 @@ USUAL_LENGTH = 500.0
 
 
 def current_shear(rng: np.random.Generator) -> Hidden:
-    """A shear that is curved: a power of the depth."""
+    """Curved shear: a power of the depth."""
     power = rng.uniform(0.8, 1.3)
     depths = np.linspace(0.0, 800.0, 17)
     profile = 3.0 * (depths / 300.0) ** power
@@ -36,7 +36,7 @@ def current_shear(rng: np.random.Generator) -> Hidden:
 
 
 def cross_current(rng: np.random.Generator) -> Hidden:
-    """A current across the track that begins somewhere and grows a little downward."""
+    """Current across the track that begins at some depth and grows a little downward."""
     top, growth = rng.uniform(10.0, 40.0), rng.uniform(-0.1, 0.2)
     depths = np.array([0.0, top, top + 30.0, 500.0])
     profile = np.array([0.0, 0.0, 1.0, 1.0 + growth])
@@ -49,7 +49,7 @@ def cross_current(rng: np.random.Generator) -> Hidden:
 
 
 def speed_log(rng: np.random.Generator) -> Hidden:
-    """A log with an error of scale that differs a little with the speed."""
+    """Speed log with a scale error that varies a little with the speed."""
     bend = rng.uniform(-0.3, 0.3)
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
@@ -61,7 +61,7 @@ def speed_log(rng: np.random.Generator) -> Hidden:
 
 
 def warp_strumming(rng: np.random.Generator) -> Hidden:
-    """Strumming that goes with the Reynolds number, and is strongest near the ship."""
+    """Strumming that varies with the Reynolds number and is strongest near the ship."""
     power, tilt = rng.uniform(-0.5, 0.5), rng.uniform(-0.2, 0.2)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -78,7 +78,7 @@ def warp_strumming(rng: np.random.Generator) -> Hidden:
 
 
 def counter_scale(rng: np.random.Generator) -> Hidden:
-    """Counters that slip, and the more, the more warp is out and pulls."""
+    """Counters that slip, more so with more warp and more tension."""
     bend = rng.uniform(-0.1, 0.2)
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
@@ -89,7 +89,7 @@ def counter_scale(rng: np.random.Generator) -> Hidden:
 
 
 def counter_offset(rng: np.random.Generator) -> Hidden:
-    """Counters that were set to zero at another mark, not quite alike on both sides."""
+    """Counters zeroed at another mark, with a small difference between the sides."""
     uneven = rng.uniform(-0.03, 0.03)
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
@@ -100,7 +100,7 @@ def counter_offset(rng: np.random.Generator) -> Hidden:
 
 
 def warp_asymmetry(rng: np.random.Generator) -> Hidden:
-    """A port warp that is longer, and the more, the more is out."""
+    """Longer port warp, with a difference that grows with the warp paid out."""
     bend = rng.uniform(-0.2, 0.2)
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
@@ -111,7 +111,7 @@ def warp_asymmetry(rng: np.random.Generator) -> Hidden:
 
 
 def catch_build_up(rng: np.random.Generator) -> Hidden:
-    """A catch that comes in steps."""
+    """Catch that arrives in steps."""
     steps = np.sort(rng.uniform(0.0, 2.8, 8))
     sizes = rng.gamma(2.0, size=8)
     sizes *= 2.8 / sizes.sum()
@@ -126,7 +126,7 @@ def catch_build_up(rng: np.random.Generator) -> Hidden:
 
 
 def net_drag(rng: np.random.Generator) -> Hidden:
-    """A fouled net whose drag grows with nearly the square of the speed, its belly fouled most."""
+    """Fouled net whose drag grows with nearly the square of the speed, most in the belly."""
     power = rng.uniform(-0.1, 0.1)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -137,7 +137,7 @@ def net_drag(rng: np.random.Generator) -> Hidden:
 
 @dataclass(frozen=True)
 class Stalling:
-    """Coefficient modifier: lift lost beyond an angle, with a power of the excess over it."""
+    """Coefficient modifier: lift lost beyond an angle, with a power of the excess."""
 
     size: float
     onset: float
@@ -155,7 +155,7 @@ class Stalling:
 
 
 def board_stall(rng: np.random.Generator) -> Hidden:
-    """Stall from an angle and with a power that are none of the catalogue's."""
+    """Stall at an angle and with a power that the catalogue does not have."""
     onset, power = np.radians(rng.uniform(14.0, 16.0)), rng.uniform(1.8, 2.2)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -166,7 +166,7 @@ def board_stall(rng: np.random.Generator) -> Hidden:
 
 @dataclass(frozen=True)
 class Leaning:
-    """Coefficient modifier: lift by the lean, slightly non-linear."""
+    """Coefficient modifier: lift changed by the lean, slightly non-linear."""
 
     size: float
     bend: float
@@ -181,7 +181,7 @@ class Leaning:
 
 
 def tilt_lift(rng: np.random.Generator) -> Hidden:
-    """Lift that feels the lean, not quite linearly."""
+    """Lift that depends on the lean, slightly non-linear."""
     bend = rng.uniform(-0.5, 0.5)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -191,7 +191,7 @@ def tilt_lift(rng: np.random.Generator) -> Hidden:
 
 
 def gear_weight(rng: np.random.Generator) -> Hidden:
-    """Boards of another weight, or clumps."""
+    """Boards or clumps of another weight."""
     boards = bool(rng.integers(2))
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -206,7 +206,7 @@ def gear_weight(rng: np.random.Generator) -> Hidden:
 
 
 def depth_sensor(rng: np.random.Generator) -> Hidden:
-    """Depth sensors off by metres, at the doors, at the net, or more and more at all."""
+    """Depth sensors with an error: at the doors, at the net, or growing at all of them."""
     kind = ('doors', 'net', 'drift')[int(rng.integers(3))]
     bend = rng.uniform(0.8, 1.2)
 
@@ -220,7 +220,7 @@ def depth_sensor(rng: np.random.Generator) -> Hidden:
 
 
 def tension_cell(rng: np.random.Generator) -> Hidden:
-    """Cells with another slope, which bends a little."""
+    """Load cells with another slope and a slight non-linearity."""
     bend = rng.uniform(-0.1, 0.1)
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
@@ -233,7 +233,7 @@ def tension_cell(rng: np.random.Generator) -> Hidden:
 
 
 def spread_sensor(rng: np.random.Generator) -> Hidden:
-    """Sound that travels at another speed than the sensor takes it to."""
+    """Speed of sound that differs from the one the spread sensor assumes."""
     bend = rng.uniform(-0.1, 0.1)
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
@@ -244,7 +244,7 @@ def spread_sensor(rng: np.random.Generator) -> Hidden:
 
 
 def heave(rng: np.random.Generator) -> Hidden:
-    """A sea that goes down or gets up during the tows."""
+    """Sea state that falls or rises during the tows."""
     change = rng.uniform(-0.1, 0.1)
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
@@ -256,7 +256,7 @@ def heave(rng: np.random.Generator) -> Hidden:
 
 @dataclass(frozen=True)
 class Drag:
-    """Node force: mud or sand that holds what is below a depth."""
+    """Node force: mud or sand that holds everything below a depth."""
 
     nodes: IntArray
     depth: float
@@ -273,7 +273,7 @@ class Drag:
 
 
 def bottom_contact(rng: np.random.Generator) -> Hidden:
-    """A softer bottom, which carries less than it holds."""
+    """Softer bottom, which carries less than it holds."""
     carry, depth = rng.uniform(0.7, 1.1), rng.uniform(150.0, 200.0)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -292,4 +292,4 @@ INSIDE: Mapping[str, Draw] = {
         tension_cell, tilt_lift, warp_asymmetry, warp_strumming,
     )
 }  # fmt: skip
-"""Every effect of the catalogue that shows in steady tows."""
+"""Effects of the catalogue that are visible in steady tows."""

@@ -1,5 +1,6 @@
-"""Causes on deck: hidden by changing keys of the plant's gear file, or one side of
-its gear, or its instruments; with the names that count as right, fixed before any trial is made.
+"""Hidden causes on deck, with the names that count as right, fixed before any trial is made.
+
+A cause changes keys of the plant's gear file, one side of its gear, or its instruments.
 """
 
 from collections.abc import Callable, Mapping
@@ -17,7 +18,7 @@ from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.hooks import DRAG, LIFT
 
 BUILT = 64
-"""So many gears are kept, as trials tow the same one in all states."""
+"""Number of cached gear models, since cases tow the same gear in all states."""
 
 NORMAL_DRAG, FRICTION = 0.985, 1.15
 """The plant's netting and its ropes have another law of drag: less across, more along the twine."""
@@ -65,7 +66,7 @@ class DeckCause:
     most: tuple[float, float]
 
     def __call__(self, rng: np.random.Generator) -> Hidden:
-        """Return the hidden effect; nothing of it is drawn."""
+        """Return the hidden effect; it has no random shape."""
 
         def gear(size: float, model: GearModel, at: Situation) -> GearModel:
             if size == 0.0:
@@ -157,7 +158,7 @@ BY_KEY = (
 
 
 def port_board_turned(rng: np.random.Generator) -> Hidden:
-    """One board alone that was shackled into another hole."""
+    """One board alone, shackled into another hole."""
     axis = int(rng.integers(3))
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -170,7 +171,7 @@ def port_board_turned(rng: np.random.Generator) -> Hidden:
 
 
 def port_board_lift(rng: np.random.Generator) -> Hidden:
-    """A port board that is bent or has lost a slat."""
+    """Port board that is bent or has lost a slat."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         return model.with_board(coefficient_modifier=MoreLoad(size, LIFT, 1.0, side=0))
@@ -179,7 +180,7 @@ def port_board_lift(rng: np.random.Generator) -> Hidden:
 
 
 def starboard_board_drag(rng: np.random.Generator) -> Hidden:
-    """A starboard board that drags something along."""
+    """Starboard board that drags an object along."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         return model.with_board(coefficient_modifier=MoreLoad(size, DRAG, 0.0, side=1))
@@ -188,7 +189,7 @@ def starboard_board_drag(rng: np.random.Generator) -> Hidden:
 
 
 def starboard_bridle(rng: np.random.Generator) -> Hidden:
-    """An upper bridle of one side that parted and was knotted."""
+    """Upper bridle of one side that parted and was knotted."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         rest = model.rest.copy()
@@ -200,7 +201,7 @@ def starboard_bridle(rng: np.random.Generator) -> Hidden:
 
 
 def port_clump_lost(rng: np.random.Generator) -> Hidden:
-    """A clump of one side that lost chain."""
+    """Clump of one side that lost chain."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         mass = model.lump_mass.copy()
@@ -211,7 +212,7 @@ def port_clump_lost(rng: np.random.Generator) -> Hidden:
 
 
 def doors_swapped(rng: np.random.Generator) -> Hidden:
-    """Sensors that hang on the wrong doors, all of them or none."""
+    """Door sensors swapped between the doors; all or nothing."""
     quantities = ('door_depth', 'pitch', 'roll')
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
@@ -225,7 +226,7 @@ def doors_swapped(rng: np.random.Generator) -> Hidden:
 
 
 def cells_one_side(rng: np.random.Generator) -> Hidden:
-    """Cells on each other's plugs, all of it or none: only unequal sides show it."""
+    """Load cells with swapped plugs, all or nothing; only unequal sides show it."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         if size == 0.0:
@@ -237,7 +238,7 @@ def cells_one_side(rng: np.random.Generator) -> Hidden:
 
 
 def pitch_askew(rng: np.random.Generator) -> Hidden:
-    """An attitude sensor of one door that sits askew, mostly in pitch."""
+    """Attitude sensor of one door mounted askew, mostly in pitch."""
     roll = rng.uniform(-0.2, 0.2)
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
@@ -250,7 +251,7 @@ def pitch_askew(rng: np.random.Generator) -> Hidden:
 
 
 def crabbing(rng: np.random.Generator) -> Hidden:
-    """A ship that crabs through the water, as long as she heads the same way in the wind."""
+    """Ship that crabs through the water while she keeps the same heading to the wind."""
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
         east, north = ahead(at)

@@ -1,5 +1,6 @@
-"""Causes on deck that the catalogue does not have, hidden by changing keys of the gear file, with
-the changes of the gear file that count as right beside a name.
+"""Hidden causes on deck that the catalogue of effects does not have.
+
+They change keys of the gear file. Certain changes of the gear file also count as right names.
 """
 
 from collections.abc import Mapping
@@ -25,7 +26,7 @@ MIDDLE = 1.4
 
 
 def torn_wing(rng: np.random.Generator) -> Hidden:
-    """A port wing, and a part of the belly behind it, that is torn (less drag) or fouled (more)."""
+    """Port wing and the belly behind it, torn (less drag) or fouled (more drag)."""
     far = rng.uniform(0.25, 0.6)
 
     def gear(size: float, model: GearModel, at: Situation) -> GearModel:
@@ -43,7 +44,7 @@ def torn_wing(rng: np.random.Generator) -> Hidden:
 
 
 def _wire(gear: GearRecord, size: float) -> GearRecord:
-    """Gear with a thicker wire: its weight in water goes with the square of the diameter."""
+    """Gear with a thicker wire, whose weight in water scales with the square of the diameter."""
     thicker = added('warp', 'diameter_m', factor=True)(gear, size)
     heavier = (1.0 + size) ** 2 - 1.0
     return added('warp', 'weight_in_water_n_m', factor=True)(thicker, heavier)
@@ -55,7 +56,7 @@ new_wire = DeckCause(
 
 
 def _setting_in(name: str, *, reversed_: bool) -> Draw:
-    """Current along the track that sets in during the tow, at all depths below the log."""
+    """Current along the track that begins during the tow, at all depths below the log."""
     depths = np.array([0.0, 5.0, 30.0, 600.0])
 
     def draw(rng: np.random.Generator) -> Hidden:

@@ -16,7 +16,7 @@ USUAL_ATTACK = 0.3
 
 @dataclass(frozen=True)
 class MoreLoad:
-    """Coefficient modifier of both boards (``side`` None) or one, by a power of attack."""
+    """Coefficient modifier of both boards (``side`` None) or one board, by a power of attack."""
 
     size: float
     place: int
@@ -46,7 +46,7 @@ def net_weight(rng: np.random.Generator) -> Hidden:
 
 
 def jet(rng: np.random.Generator) -> Hidden:
-    """A layer of the sea that moves along the track."""
+    """Layer of the sea that moves along the track."""
     middle, width = rng.uniform(90.0, 150.0), rng.uniform(25.0, 40.0)
     depths = np.linspace(0.0, 400.0, 41)
     profile = np.exp(-0.5 * ((depths - middle) / width) ** 2)
@@ -73,7 +73,7 @@ def bridle_weed(rng: np.random.Generator) -> Hidden:
 
 
 def block_angle(rng: np.random.Generator) -> Hidden:
-    """Tension cells in blocks that hang otherwise with short warps than when calibrated."""
+    """Load cells in blocks that hang at another angle on short warps than at calibration."""
     power = rng.uniform(0.7, 1.3)
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
@@ -84,7 +84,7 @@ def block_angle(rng: np.random.Generator) -> Hidden:
 
 
 def counter_drift(rng: np.random.Generator) -> Hidden:
-    """Counters that lose a little at each haul, so that they drift through the tow."""
+    """Counters that lose a little at each haul, and so drift during the tow."""
 
     def towed(size: float, inputs: FloatArray, at: Situation) -> FloatArray:
         return np.array([*(inputs[:2] - size * (at.hours - 1.4)), inputs[2]])
@@ -93,7 +93,7 @@ def counter_drift(rng: np.random.Generator) -> Hidden:
 
 
 def port_depth_sensor(rng: np.random.Generator) -> Hidden:
-    """A depth sensor of one board that shows too much, the deeper it is."""
+    """Depth sensor of one board with an error that grows with depth."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         depth = readings['port_door_depth']
@@ -103,7 +103,7 @@ def port_depth_sensor(rng: np.random.Generator) -> Hidden:
 
 
 def starboard_cell(rng: np.random.Generator) -> Hidden:
-    """A tension cell of one side alone."""
+    """Wrong load cell on one side."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         return readings | {CABLES[1]: readings[CABLES[1]] * (1.0 + size)}
@@ -112,7 +112,7 @@ def starboard_cell(rng: np.random.Generator) -> Hidden:
 
 
 def pitch_mount(rng: np.random.Generator) -> Hidden:
-    """Attitude sensors that were mounted askew, and turn in their clamps."""
+    """Attitude sensors mounted askew that also turn in their clamps."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         error = size * at.hours
@@ -123,7 +123,7 @@ def pitch_mount(rng: np.random.Generator) -> Hidden:
 
 
 def opening_by_depth(rng: np.random.Generator) -> Hidden:
-    """A sonar whose picture of the opening is stretched with depth."""
+    """Sonar whose picture of the opening is stretched with depth."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         opening = readings['vertical_opening']
@@ -134,7 +134,7 @@ def opening_by_depth(rng: np.random.Generator) -> Hidden:
 
 
 def spread_by_hours(rng: np.random.Generator) -> Hidden:
-    """A spread sensor whose clock drifts."""
+    """Spread sensor whose clock drifts."""
 
     def shown(size: float, readings: Readings, at: Situation) -> Readings:
         return readings | {'door_spread': readings['door_spread'] + size * (at.hours - 0.9)}

@@ -1,1 +1,1 @@
-"""Existence of steady states, and the refusals where there is none."""
+"""Existence of steady states, and the reasons for refusals."""

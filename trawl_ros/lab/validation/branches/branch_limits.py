@@ -21,16 +21,16 @@ from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 from trawl_ros.solver.stability import growing_mode, stability
 
 WORKING = 1.9
-"""Slowest speed (m/s) at which the gear is towed."""
+"""Lowest towing speed of the gear, m/s."""
 
 MIDDLE = 500.0
-"""Warp length (m) of the branches that leave it alone."""
+"""Warp length (m) of the branches over other parameters."""
 
 LYING = np.sin(np.radians(80.0))
-"""Vertical part of an outward normal at which a branch is left: there a board lies flat."""
+"""Vertical component of an outward normal at which following stops: the board lies flat."""
 
 SWING = 0.01
-"""Frequency (rad/s) from which a loss of stability is a Hopf point."""
+"""Lowest frequency (rad/s) at which a loss of stability counts as a Hopf point."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class BranchCurve:
 
 @dataclass(frozen=True)
 class BranchLimit:
-    """Limit on a branch: a fold, or a loss of stability and the part that moves in it."""
+    """Limit on a branch: a fold, or a loss of stability with the part that moves."""
 
     kind: str
     value: float
@@ -127,7 +127,7 @@ def _turned(model: GearModel, index: int, degrees: float) -> tuple[GearModel, To
 
 
 def followed_branch(sweep: ParameterSweep, most: int) -> BranchCurve:
-    """Follow a branch to its bounds, to where a board lies flat, or for ``most`` points."""
+    """Follow a branch to its bounds, to a board that lies flat, or for ``most`` points."""
     model, tow = sweep.family(sweep.start)
     port, starboard = tow.lengths
     point = OperatingPoint(port, starboard, float(np.linalg.norm(tow.block_velocities[0])))
@@ -187,7 +187,7 @@ def _limit(
 
 
 def limit_findings(model: GearModel, *, small: bool) -> Findings:
-    """Follow all branches of a gear and list what ends them; ``small`` takes one, on less of it."""
+    """Follow all branches of a gear and list their limits; ``small`` follows part of one."""
     lengths = (MIDDLE,) if small else (300.0, MIDDLE, 700.0)
     curves = [
         followed_branch(sweep, 20 if small else 60) for sweep in sweeps(model, lengths, not small)
@@ -213,7 +213,7 @@ def limit_findings(model: GearModel, *, small: bool) -> Findings:
 
 
 def _rows(found: list[tuple[BranchCurve, list[BranchLimit]]]) -> Iterator[MeasuredValue]:
-    """Speeds at which the branches over speed turn unstable."""
+    """Rows on the speeds at which the branches over speed lose stability."""
     for curve, ends in found:
         if curve.sweep.unit != 'm/s':
             continue

@@ -1,8 +1,8 @@
 """Branch continuation of steady states over a lattice, each reached from all its neighbours.
 
-A state that is found is handed to every neighbour as a start, also back to the one it came
-from, so each pair of neighbours is walked in both directions. Some places are solved cold as
-well. Were there a second branch, the answers at a place would lie apart.
+A state that was found is the start for every neighbour, and also for the place it came from, so
+each pair of neighbours is solved in both directions. Some places are also solved cold. If there
+were a second branch, the answers at one place would differ.
 """
 
 import time
@@ -18,8 +18,8 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_usable
 from trawl_ros.solver.operating_point import OperatingPoint
 
-SAME = 1e-3
-"""Distance (m) within which two roots are one."""
+SAME_ROOT_M = 1e-3
+"""Largest distance (m) between two roots that count as one."""
 
 Verdict = Literal['usable'] | Refusal
 Spot = tuple[int, int]
@@ -28,7 +28,7 @@ Spot = tuple[int, int]
 
 @dataclass(frozen=True)
 class Place:
-    """A gear and how it is towed."""
+    """Gear with its operating point."""
 
     model: GearModel
     point: OperatingPoint
@@ -45,12 +45,12 @@ class Search:
 
 @dataclass(frozen=True)
 class Answer:
-    """Answer: outcome of all searches at a place.
+    """Result of all searches at a place.
 
-    ``root`` is the usable one, or else the first that was found, and ``refusal`` says why it
-    may not be used. ``usable_roots`` counts usable ones more than `SAME` apart. ``apart`` is the
-    largest distance (m) between any two roots found; ``agreed`` says that all searches found a
-    root or none did.
+    ``root`` is the usable root, or else the first one found, and ``refusal`` the reason why it may
+    not be used. ``usable_roots`` counts usable roots more than `SAME_ROOT_M` apart. ``apart`` is
+    the largest distance (m) between two roots. ``agreed`` is true if all searches found a root, or
+    none did.
     """
 
     verdict: Verdict
@@ -137,7 +137,7 @@ def judged(place: Place, searches: list[Search]) -> Answer:
     for found in (tried.found for tried in searches if tried.found is not None):
         distances = [largest_distance(found, root) for root in roots]
         apart = max([apart, *distances])
-        if all(one > SAME for one in distances):
+        if all(one > SAME_ROOT_M for one in distances):
             roots.append(found)
     seconds = max(tried.seconds for tried in searches)
     refusals: list[NoSteadyState | None] = []

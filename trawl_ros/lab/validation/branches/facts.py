@@ -1,4 +1,4 @@
-"""Checks of a map of steady states: the usable ones form one branch, the good one."""
+"""Checks of a map of steady states: all usable states form one branch."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -6,18 +6,19 @@ import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, within
-from trawl_ros.lab.validation.branches.continuation import SAME, Answer
+from trawl_ros.lab.validation.branches.continuation import SAME_ROOT_M, Answer
 from trawl_ros.lab.validation.branches.lattices import Lattice
 from trawl_ros.model.board_law import LAW_RANGE
 from trawl_ros.model.observables import COLLAPSED_NORMAL, outward_normal_lift
 from trawl_ros.records.observables import Observables
 
-PATIENCE = 2.0
-"""Longest CPU time (s) an answer may take."""
+MAX_ANSWER_S = 2.0
+"""Longest allowed CPU time of an answer, s."""
 
-JUMP = 5.0
-"""Change of the attack angle (°) between neighbours above which a branch has been left: less
-than half of what parts the boards' usual angles from the collapsed ones known of this gear.
+MAX_ATTACK_STEP_DEG = 5.0
+"""Change of the attack angle (°) between neighbours that indicates another branch.
+
+It is less than half the difference between the boards' usual angles and the known collapsed ones.
 """
 
 GROWING: dict[str, Callable[[Observables], float]] = {
@@ -61,7 +62,7 @@ def branch_checks(name: str, lattices: Sequence[Lattice]) -> list[MeasuredValue]
             'distance between the states to which different starts lead, at usable places',
             max(answer.apart for answer in good),
             'm',
-            at_most(SAME),
+            at_most(SAME_ROOT_M),
             f'{searches} searches at {len(good)} places: from every neighbour, so both ways '
             'along each line of the map, and at every third place cold.',
             key=f'{name}_apart',
@@ -104,7 +105,7 @@ def branch_checks(name: str, lattices: Sequence[Lattice]) -> list[MeasuredValue]
             'longest CPU time of one answer, refusals included',
             max(answer.seconds for answer in every),
             's',
-            at_most(PATIENCE),
+            at_most(MAX_ANSWER_S),
             'Searches end after a fixed number of iterations, whatever they meet.',
             key=f'{name}_slowest',
         ),
@@ -124,7 +125,7 @@ def smoothness_checks(lattice: Lattice) -> Iterator[MeasuredValue]:
             default=0.0,
         ),
         '°',
-        at_most(JUMP),
+        at_most(MAX_ATTACK_STEP_DEG),
         'A step onto another branch would show as a jump.',
         key='jump',
     )

@@ -1,4 +1,4 @@
-"""Fastening points moved forward: boards lean over less with the speed, until branches fold."""
+"""Fastening points moved forward: boards lean less with speed, until branches fold."""
 
 import numpy as np
 
@@ -20,17 +20,17 @@ from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.trim import trim
 
 SHIFTS_FORWARD_M = 0.1, 0.2, 0.3
-"""Shifts of the warp point forward of the shipped one, before the trim."""
+"""Shifts of the warp point forward of its default, before the trim."""
 
 ATTACK, INCLINATION = np.radians(20.0), np.radians(14.0)
 """Angles of both trims."""
 
 SPEEDS = 2.3, 2.2, 2.1, 2.0, 1.9, 1.8
 SHORT = 200.0, 300.0
-"""Warp lengths (m) on which branches are looked at for folds."""
+"""Warp lengths (m) on which branches are searched for folds."""
 
 POINTS = 40
-"""Points along a branch."""
+"""Number of points along a branch."""
 
 
 def run(small: bool) -> Findings:
@@ -59,7 +59,7 @@ def run(small: bool) -> Findings:
 
 
 def moved_forward(model: GearModel, shift_m: float) -> GearModel:
-    """The gear with its warp point shifted forward, and all points trimmed from there."""
+    """Return the gear with its warp point shifted forward, and all points trimmed from there."""
     points = model.board.points.copy()
     points[0, 0] += shift_m
     return trim(

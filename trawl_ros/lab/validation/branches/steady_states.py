@@ -1,35 +1,116 @@
-"""Steady states of the default gear over its conditions: existence, and absence of collapse."""
+"""Steady states of the default gear over its operating conditions: existence, and no collapse."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.measured import MeasuredValue, within
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.running.timing import factor_cost
 from trawl_ros.lab.validation.branches.branch_limits import MIDDLE, limit_findings
-from trawl_ros.lab.validation.branches.collapsed_starts import OutcomeTally, collapsed_shapes, tally
-from trawl_ros.lab.validation.branches.continuation import SAME, Verdict
+from trawl_ros.lab.validation.branches.continuation import SAME_ROOT_M, Verdict, largest_distance
 from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
 from trawl_ros.lab.validation.branches.lattices import (
     ANGLES,
+    LOOKS,
     SPEED,
     Lattice,
+    angle_figure,
     angle_lattice,
+    speed_figure,
     speed_lattice,
 )
-from trawl_ros.lab.validation.branches.maps import LOOKS, angle_figure, speed_figure
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.observables import COLLAPSED_NORMAL
+from trawl_ros.model.rotations import about_axis
+from trawl_ros.model.state import State
 from trawl_ros.report.pictures import Drawing
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_usable
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow
 from trawl_ros.solver.relax import relax
+
+TURNS: Mapping[str, tuple[float, float]] = {
+    'at −5° to the flow': (-5.0, 14.0),
+    'along the flow': (0.0, 0.0),
+    'at 45° to the flow': (45.0, 14.0),
+    'across the flow': (90.0, 0.0),
+    'flat, face down': (20.0, -90.0),
+    'flat, face up': (20.0, 90.0),
+    'upside down': (20.0, 180.0),
+    'back to front': (180.0, 0.0),
+}
+"""Attitudes (°) of a collapsed board: leading edge outward, outward normal up."""
+
+FOLDED = 0.05
+"""Width of a folded gear as a share of its original width."""
+
+
+@dataclass(frozen=True)
+class OutcomeTally:
+    """Tally of searches from collapsed shapes by outcome; ``refused`` by reason."""
+
+    good: int
+    refused: Counter[str]
+    other: int
+
+    @property
+    def searches(self) -> int:
+        """Number of searches."""
+        return self.good + self.refused.total() + self.other
+
+
+def turned_boards(turn: tuple[float, float]) -> FloatArray:
+    """Rotations (2, 3, 3) of both boards at an attitude of `TURNS`."""
+    yaw, lean = np.radians(turn)
+    port = about_axis(2, yaw) @ about_axis(0, lean)
+    flip = np.array([1.0, -1.0, 1.0])
+    return np.stack([port, flip[:, None] * port * flip])
+
+
+def collapsed_shapes(shape: State) -> list[State]:
+    """Return a shape with both boards or one board collapsed, and with the whole gear folded."""
+    shapes = []
+    for turn in TURNS.values():
+        both = turned_boards(turn)
+        for rotations in (both, np.stack([both[0], shape.board_rotations[1]])):
+            shapes.append(replace(shape, board_rotations=rotations))
+    narrow = np.array([1.0, FOLDED, 1.0])
+    folded = replace(
+        shape,
+        nodes=shape.nodes * narrow,
+        board_positions=shape.board_positions * narrow,
+        board_rotations=turned_boards(TURNS['flat, face down']),
+    )
+    return [*shapes, folded]
+
+
+def tally(
+    model: GearModel,
+    point: OperatingPoint,
+    shapes: Sequence[State],
+    good: Equilibrium | None,
+) -> OutcomeTally:
+    """Search at a point from collapsed shapes; ``good`` is its steady state, or None."""
+    same, other = 0, 0
+    refused: Counter[str] = Counter()
+    for shape in shapes:
+        try:
+            found = find_equilibrium(model, point, near=shape)
+            if good is not None and largest_distance(found, good) <= SAME_ROOT_M:
+                same += 1
+            else:
+                require_usable(model, found)
+                other += 1
+        except NoSteadyState as error:
+            refused[error.reason] += 1
+    return OutcomeTally(same, refused, other)
+
 
 WORKING = 1.9, 2.3
 """Speeds (m/s) between which the gear is towed."""
@@ -38,9 +119,9 @@ FACTORISATIONS = 21
 """Number of factorisations that are timed."""
 
 SHORTEST = 200.0
-"""Warp length (m) from which it is; on shorter warps netting hangs slack."""
+"""Shortest towing warp, m; on shorter warps netting is slack."""
 
-BOWING = 317.0
+BOWING_PRESSURE_PA = 317.0
 """Load (Pa) under which twine bows: that of water on meshes towed at 2.1 m/s with bars at 20° to
 the flow."""
 
@@ -80,7 +161,7 @@ SMALL = SearchSize(
     hopeless_starts=1,
 )
 HOPELESS = 500.0, 1.5
-"""A warp length (m) and speed (m/s) at which the gear cannot be towed."""
+"""Warp length (m) and speed (m/s) at which the gear cannot be towed."""
 
 
 def run(small: bool) -> Findings:
@@ -149,8 +230,8 @@ def _without_reason(speeds: Lattice) -> MeasuredValue:
 
 
 def _bowed(model: GearModel, size: SearchSize) -> MeasuredValue:
-    """Usable places on the shortest warp, with twine that bows under the water's load."""
-    netting = model.gear.netting.model_copy(update={'bowing_pressure_pa': BOWING})
+    """Check the usable places on the shortest warp, with twine that bows under the water's load."""
+    netting = model.gear.netting.model_copy(update={'bowing_pressure_pa': BOWING_PRESSURE_PA})
     bowed = build_model(model.gear.model_copy(update={'netting': netting}))
     length, refused = size.lengths[0], []
     speeds = [speed for speed in size.speeds if speed >= WORKING[0]]
@@ -161,7 +242,7 @@ def _bowed(model: GearModel, size: SearchSize) -> MeasuredValue:
             refused.append(str(refusal))
     return MeasuredValue(
         f'share of usable places at {length:g} m of warp from {WORKING[0]:g} m/s, with twine that '
-        f'bows under {BOWING:g} Pa',
+        f'bows under {BOWING_PRESSURE_PA:g} Pa',
         100.0 * (1.0 - len(refused) / len(speeds)),
         '%',
         within(0.0, of=100.0),
@@ -173,7 +254,7 @@ def _bowed(model: GearModel, size: SearchSize) -> MeasuredValue:
 
 
 def _in_factorisations(rows: Sequence[MeasuredValue], factor_s: float) -> Iterator[MeasuredValue]:
-    """Rows with the longest CPU time told in factorisations too, whatever the machine."""
+    """Express the longest CPU time in factorisations too, which does not depend on the machine."""
     for row in rows:
         if row.key != 'speed_slowest':
             yield row
@@ -213,7 +294,7 @@ def _working(key: str, what: str, lattices: Sequence[Lattice]) -> MeasuredValue:
 
 
 def _collapsed(model: GearModel, size: SearchSize) -> tuple[list[MeasuredValue], TextTable]:
-    """Search from collapsed shapes, with and without a steady state at hand."""
+    """Search from collapsed shapes, with and without a known steady state."""
     rows = []
     tallies: list[OutcomeTally] = []
     goods: list[Equilibrium] = []
@@ -232,7 +313,8 @@ def _collapsed(model: GearModel, size: SearchSize) -> tuple[list[MeasuredValue],
             'searches from a collapsed shape that gave another state than the good branch',
             sum(each.other for each in tallies),
             target=within(0.0, of=0.0),
-            note=f'{total} searches; the good branch is the one found cold, within {SAME:g} m.',
+            note=f'{total} searches; the good branch is the one found cold, within '
+            f'{SAME_ROOT_M:g} m.',
             key='collapsed_starts',
         ),
         _overturned(model, goods[-1]),
@@ -254,7 +336,7 @@ def _row(length: float, speed: float, counted: OutcomeTally) -> tuple[str, ...]:
 
 
 def _overturned(model: GearModel, good: Equilibrium) -> MeasuredValue:
-    """Check that boards set so far in that they collapse are refused, whatever the start."""
+    """Check that boards installed at an angle at which they collapse are always refused."""
     overturned = model.with_board(installation=(OVERTURNED, 0.0, 0.0))
     tow = steady_tow(overturned, good.point)
     collapsed, _, left = relax(overturned, good.state, tow, tolerance=1e-3, time_step=10.0)
@@ -288,7 +370,7 @@ def _counts(speeds: Lattice, angles: Sequence[Lattice]) -> TextTable:
 
 def _text(speeds: Lattice) -> str:
     doubtful = [a for a in speeds.answers.values() if a.verdict != 'usable' and a.root is not None]
-    several = sum(answer.apart > SAME or not answer.agreed for answer in doubtful)
+    several = sum(answer.apart > SAME_ROOT_M or not answer.agreed for answer in doubtful)
     surfaced = any(answer.verdict == 'surfaced' for answer in speeds.answers.values())
     wet = 'Fast on short warps the headrope comes out of the water. ' if surfaced else ''
     return (

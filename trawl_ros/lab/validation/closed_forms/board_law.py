@@ -1,4 +1,4 @@
-"""Board alone at random attitudes, against the paper's equations evaluated anew."""
+"""Loads on a board at random attitudes, compared with separately coded equations of the paper."""
 
 from dataclasses import dataclass, replace
 from math import pi, radians
@@ -32,19 +32,20 @@ WATER = Water(
     depths=np.array([0.0, 100.0, 300.0]),
     currents=np.array([[0.3, -0.1], [0.1, 0.2], [-0.2, 0.1]]),
 )
-"""Density that grows and a current that shears, so that both are seen to be taken locally."""
+"""Water whose density and current vary with depth, to show that both are evaluated locally."""
 
 WITHIN = (0.0, radians(40.0)), (radians(-40.0), radians(40.0))
-"""Attack and slip where eq. 14 holds as it stands."""
+"""Ranges of attack and slip in which eq. 14 holds unchanged."""
 
 ANYWHERE = (-pi, pi), (radians(-85.0), radians(85.0))
-"""Attack, and the flow's angle to the plane across the span."""
+"""Ranges of attack, and of the angle of the flow to the plane across the span."""
 
 
 @dataclass(frozen=True)
 class LoadDifferences:
-    """Largest differences as shares of the force and of the moment; ``attack`` the least and
-    the largest attack angle (rad) that was met.
+    """Largest differences, as shares of the force and of the moment.
+
+    ``attack`` holds the smallest and largest attack angles (rad) that occurred.
     """
 
     force: float
@@ -55,9 +56,9 @@ class LoadDifferences:
 def moving_at(
     model: GearModel, random: np.random.Generator, attack: FloatArray, slip: FloatArray
 ) -> State:
-    """Both boards at random places and attitudes, met by the flow at given angles (2,).
+    """Place both boards at random attitudes in a flow at given angles (2,).
 
-    ``slip`` is that of eq. 2 where the flow comes from ahead.
+    ``slip`` is that of eq. 2 for flow from ahead.
     """
     outward = np.array([1.0, -1.0])
     flow = np.stack([-np.cos(attack), np.sin(attack), np.tan(slip) * np.abs(np.cos(attack))], 1)
@@ -82,7 +83,7 @@ def moving_at(
 
 
 def on_paper(gear: GearRecord, model: GearModel, state: State) -> list[PaperBoard]:
-    """The same two boards in the paper's terms: vertices and their velocities."""
+    """Return the same two boards in the paper's terms: vertices and their velocities."""
     tow = steady_tow(model, OperatingPoint(500.0, 500.0, 2.0))
     points = points_of(model, state, tow)
     places = points.positions[model.nodes : model.nodes + 6].reshape(2, 3, 3)
@@ -114,7 +115,7 @@ def compare_laws(
     within: bool,
     paper: GearRecord | None = None,
 ) -> LoadDifferences:
-    """Both boards at all attitudes; the equations are those of ``gear`` or of ``paper``."""
+    """Compare both boards at all attitudes, with the equations of ``gear`` or of ``paper``."""
     model = replace(build_model(gear), water=WATER)
     # The gyroscopic moment is no part of eq. 1-14.
     model = model.with_board(inertia=np.zeros((3, 3)))
@@ -136,7 +137,7 @@ def compare_laws(
 
 
 def run(small: bool) -> Findings:
-    """Compare within the law's range and outside."""
+    """Compare inside and outside the range of the law."""
     random = np.random.default_rng(20)
     default = load_gear('kaifuha')
     checks, rows = [], []

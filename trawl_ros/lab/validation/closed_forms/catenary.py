@@ -21,7 +21,7 @@ WEIGHT, STIFFNESS = WIRE['weight_in_water_n_m'], WIRE['stiffness_n']
 
 HANGING_LENGTH = 600.0
 HUNG_LOAD = 20_000.0
-"""Weight in water (N) at the end of a wire that is taut all along."""
+"""Weight in water (N) at the end of a wire that is taut over its whole length."""
 
 SAGGING_LENGTH = 480.0
 START, END = np.array([0.0, 0.0, -20.0]), np.array([400.0, 0.0, -60.0])
@@ -36,7 +36,7 @@ def stretch_of_hanging(load: float) -> float:
 
 
 def rounded_off() -> float:
-    """Elongation (m) lost by the rounded corner between slack and taut.
+    """Elongation (m) lost by the smooth transition between slack and taut.
 
     Below w EA of tension a bar is strained by 2 √(w T / EA) - w and not by T / EA; integrated
     over the lower part of a wire that carries nothing but itself.
@@ -56,8 +56,10 @@ def hanging(segments: int, load: float = 0.0) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Sagging:
-    """``places`` (n, 3) of points equally far apart along a wire, m, and its pull (2, 3) on
-    both holds, N.
+    """Shape and end forces of a sagging wire.
+
+    ``places`` (n, 3) are points at equal distances along the wire, m. ``pulls`` (2, 3) are its
+    forces on both supports, N.
     """
 
     places: FloatArray
@@ -108,7 +110,7 @@ def sagging(segments: int) -> Sagging:
 
 
 def run(small: bool) -> Findings:
-    """Compare both, the sagging wire at several numbers of segments."""
+    """Compare both wires with their closed forms, the sagging wire at several segment counts."""
     counts = SEGMENTS[1:4] if small else SEGMENTS
     models = {count: sagging(count) for count in counts}
     exact = {count: elastic_catenary(count) for count in counts}

@@ -27,8 +27,8 @@ WARP, SPEED = 500.0, 2.1
 RATE, RAMP = 0.4, 8.0
 """Speed of hauling (m/s), and how long (s) the winches take to come up to it and to stop."""
 
-BEGIN = 10.0
-"""Seconds of steady tow before."""
+STEADY_TOW_S = 10.0
+"""Duration of the steady tow before, s."""
 
 STEPS = (0.4, 0.2, 0.1)
 USUAL = 0.2
@@ -47,9 +47,9 @@ class WireHaul:
     def hauled(self, t: float) -> tuple[float, float]:
         """Length hauled (m) and its rate (m/s) at a time, with cosine ramps of the rate."""
         steady = self.wire / RATE - RAMP
-        up = min(max(t - BEGIN, 0.0), RAMP)
-        down = min(max(t - BEGIN - RAMP - steady, 0.0), RAMP)
-        on = min(max(t - BEGIN - RAMP, 0.0), steady)
+        up = min(max(t - STEADY_TOW_S, 0.0), RAMP)
+        down = min(max(t - STEADY_TOW_S - RAMP - steady, 0.0), RAMP)
+        on = min(max(t - STEADY_TOW_S - RAMP, 0.0), steady)
         wave = RAMP / np.pi
 
         def ramped(s: float) -> float:
@@ -60,7 +60,7 @@ class WireHaul:
         return float(wire), float(rate)
 
     def boundary(self, tow: Tow, t: float) -> Tow:
-        """Towing boundary at a time, on from a steady tow."""
+        """Towing boundary at a time after a steady tow."""
         wire, rate = self.hauled(t)
         return replace(
             tow,
@@ -81,10 +81,20 @@ class BudgetInstant:
 
 @dataclass(frozen=True)
 class Budget:
-    """``times`` (k,) s, of ``steps`` steps and the halves of those that were halved; ``works``
-    (k, 10) J done until then in the order of `WORKS`; ``stores`` (k, 3) J more than at first in
-    the order of `STORES`; ``drum`` J that winches which take the wire in at the block would have
-    done.
+    """Energy budget of a manoeuvre.
+
+    Attributes
+    ----------
+    times : (k,) array
+        Ends of all steps, s; a step that was halved has more.
+    works : (k, 10) array
+        Work done until then, J, in the order of `WORKS`.
+    stores : (k, 3) array
+        Energy gained until then, J, in the order of `STORES`.
+    drum
+        Work of winches that take the wire in at the towing block, J.
+    steps
+        Number of steps, not counting halves.
     """
 
     times: FloatArray
@@ -134,7 +144,7 @@ def budget(model: GearModel, start: Equilibrium, haul: WireHaul, h: float) -> Bu
 def advanced(
     stepper: Stepper, now: BudgetInstant, boundary: Callable[[float], Tow], h: float, halvings: int
 ) -> list[BudgetInstant]:
-    """Advance by one step; a step that fails is taken in halves, as a simulation does."""
+    """Advance by one step; a step that fails is halved, as in a simulation."""
     tow = boundary(now.time + h)
     try:
         return [BudgetInstant(now.time + h, stepper.step(now.motion, tow, h), tow)]
@@ -146,7 +156,7 @@ def advanced(
 
 
 def run(small: bool) -> Findings:
-    """Haul with shorter and shorter steps."""
+    """Haul with decreasing steps."""
     gear = load_gear('kaifuha')
     if small:
         gear = gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})
@@ -276,7 +286,7 @@ def _drawn(budgets: dict[float, Budget], haul: WireHaul) -> Figure:
         below.plot(other.times, other.residual, label=f'steps of {h:g} s')
     below.set(ylabel='missing in the budget [J]', xlabel='time [s]')
     for axes in (above, middle, below):
-        axes.axvspan(BEGIN, BEGIN + haul.wire / RATE + RAMP, color='k', alpha=0.07)
+        axes.axvspan(STEADY_TOW_S, STEADY_TOW_S + haul.wire / RATE + RAMP, color='k', alpha=0.07)
         axes.grid(alpha=0.3)
         axes.legend(loc='center left', bbox_to_anchor=(1.0, 0.5))
     return figure

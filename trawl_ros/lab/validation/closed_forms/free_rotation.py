@@ -21,22 +21,30 @@ from trawl_ros.solver.stepper import Motion, Stepper
 
 VOID = Water(density=1e-12, gravity=0.0)
 
-SECONDS = 100.0
+DURATION_S = 100.0
 STEPS = (0.8, 0.4, 0.2)
-"""Time steps (s), the last being that of a simulation."""
+"""Time steps (s); the last one is that of a simulation."""
 
-SHORT = 0.05
+SHORT_STEP_S = 0.05
 """A step (s) much shorter than a simulation's."""
 
 RATES = 0.2 * np.array([[1.0, 0.01, 0.02], [0.4, 0.5, 0.6]])
-"""First rates of turn of both boards about their own axes, rad/s."""
+"""Initial rates of turn of both boards about their own axes, rad/s."""
 
 
 @dataclass(frozen=True)
 class Spin:
-    """``times`` (k,) s; ``momentum`` and ``energy`` (k,): how far the boards' angular momentum
-    (length of the difference, the worse of both) and their kinetic energy are from the first,
-    as shares of it; ``upright`` (k, 2) cosine between each board's z axis and its first.
+    """Conservation of momentum and energy of freely rotating boards.
+
+    Attributes
+    ----------
+    times : (k,) array
+        In s.
+    momentum, energy : (k,) arrays
+        Changes of the angular momentum (length of the difference vector, larger of both boards) and
+        of the kinetic energy, as shares of the initial values.
+    upright : (k, 2) array
+        Cosine of the angle between each board's z axis and its initial direction.
     """
 
     times: FloatArray
@@ -46,9 +54,9 @@ class Spin:
 
 
 def spinning() -> tuple[GearModel, State, Tow]:
-    """Two boards of the default gear that spin, port about its axis of middle inertia.
+    """Return two spinning boards of the default gear, port about its axis of middle inertia.
 
-    There a spin is unstable: that board tumbles.
+    This spin is unstable: the board tumbles.
     """
     model = lone_line(WIRE, 3, VOID)
     tow = holding(60.0, np.zeros(3), np.zeros(3))
@@ -66,8 +74,10 @@ def spinning() -> tuple[GearModel, State, Tow]:
 
 
 def momentum_and_energy(model: GearModel, state: State) -> tuple[FloatArray, float]:
-    """Angular momentum (2, 3) about the centres of gravity, N m s, and kinetic energy of both
-    boards, J, from the gear file's inertia in each board's own axes.
+    """Angular momentum (2, 3), in N m s, and kinetic energy (J) of both boards.
+
+    The momentum is about the centres of gravity. Both come from the gear file's inertia, in the
+    board's own axes.
     """
     about = model.gear.board.inertia
     momentum, energy = np.zeros((2, 3)), 0.0
@@ -90,7 +100,7 @@ def momentum_and_energy(model: GearModel, state: State) -> tuple[FloatArray, flo
 
 
 def spun(h: float, seconds: float) -> Spin:
-    """The boards' motion as the stepper has it in steps of ``h`` seconds."""
+    """Return the boards' motion by the stepper, in steps of ``h`` seconds."""
     model, state, tow = spinning()
     inertia = model.pattern.matrix(mass(model, state, tow)).toarray()
     first = np.linalg.solve(inertia, forces(model, state, tow))
@@ -117,9 +127,9 @@ def spun(h: float, seconds: float) -> Spin:
 
 
 def run(small: bool) -> Findings:
-    """Spin with shorter and shorter steps."""
-    seconds = 0.5 * SECONDS if small else SECONDS
-    spins = {h: spun(h, seconds) for h in (STEPS if small else (*STEPS, SHORT))}
+    """Let the boards spin with decreasing steps."""
+    seconds = 0.5 * DURATION_S if small else DURATION_S
+    spins = {h: spun(h, seconds) for h in (STEPS if small else (*STEPS, SHORT_STEP_S))}
     momentum = {h: float(spin.momentum.max()) for h, spin in spins.items()}
     energy = {h: float(spin.energy.max()) for h, spin in spins.items()}
     usual = STEPS[-1]
@@ -164,7 +174,7 @@ def run(small: bool) -> Findings:
         ),
     ]
     if not small:
-        checks.append(_floor(momentum[SHORT]))
+        checks.append(_floor(momentum[SHORT_STEP_S]))
     rows = tuple((f'{h:g}', f'{momentum[h]:.2e}', f'{energy[h]:.2e}') for h in spins)
     return Findings(
         rows=tuple(checks),
@@ -190,7 +200,7 @@ def run(small: bool) -> Findings:
 
 def _floor(drift: float) -> MeasuredValue:
     return MeasuredValue(
-        f'largest drift of the angular momentum in {SECONDS:.0f} s, steps of {SHORT} s',
+        f'largest drift of the angular momentum in {DURATION_S:.0f} s, steps of {SHORT_STEP_S} s',
         drift,
         target=at_most(1e-3),
         note='With the error of the method out of the way, it is the equations that keep it.',

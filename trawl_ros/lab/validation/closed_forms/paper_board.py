@@ -1,8 +1,8 @@
-"""Load on one otter board, written anew from the paper and the continuation of its law.
+"""Loads on one otter board, coded separately from the paper and the continuation of its law.
 
-It shares nothing with `trawl_ros.model.board`: the axes come from the board's three vertices in
-fixed axes (eq. 7-11) instead of a rotation matrix, each side has its own handedness, and what
-holds outside the law's range is built from slopes.
+It shares no code with `trawl_ros.model.board`. The axes come from the board's three vertices (eq.
+7-11) instead of a rotation matrix, and each side has its own handedness. Outside the law's range
+the coefficients are integrated from slopes.
 """
 
 from dataclasses import dataclass
@@ -18,13 +18,13 @@ INNER, OUTER = radians(-40.0), radians(90.0)
 """Attack angles at which lift and moments are gone."""
 
 FULL = radians(40.0)
-"""Attack and slip up to which eq. 14 holds as it stands."""
+"""Largest attack and slip at which eq. 14 holds unchanged."""
 
 ROUNDING = radians(4.0)
 
 
 def _sloping(angles: list[float], slopes: list[float]) -> PPoly:
-    """Curve through the origin with a piecewise linear slope, straight between the given angles."""
+    """Return a curve through the origin whose slope is piecewise linear between given angles."""
     curve = PPoly.from_spline(make_interp_spline(angles, slopes, k=1)).antiderivative()
     curve.c[-1] -= float(curve(0.0))
     return curve
@@ -37,7 +37,7 @@ RESTING_SLIP = _sloping(
     [-pi, -FULL - ROUNDING, -FULL, FULL, FULL + ROUNDING, pi], [0.0, 0.0, 1.0, 1.0, 0.0, 0.0]
 )
 FACING = _sloping([-pi, -ROUNDING, 0.0, pi], [-1.0, -1.0, 1.0, 1.0])
-"""Attack angle as drag meets it: turned over for flow on the inner face."""
+"""Attack angle for drag: mirrored for flow on the inner face."""
 
 FADING = BPoly.from_derivatives(
     [-pi, INNER, 0.0, FULL, OUTER, pi],
@@ -122,7 +122,8 @@ class PaperBoard:
     def _strips(self, u: float) -> tuple[float, float, float]:
         """Damping about x, y, z, N m s, summed over strips of the board.
 
-        A strip at r meets the flow u at ω r / u more, and lifts with the slope against it.
+        The attack angle of a strip at r changes by ω r / u, and the slope of its lift damps the
+        rotation.
         """
         lift = 0.5 * self.density * u * u * self.record.rotary_slope
         places, shares = np.polynomial.legendre.leggauss(4)

@@ -158,7 +158,7 @@ class Ledger:
         return np.array([stores[key] for key in STORES])
 
     def drum_power(self, state: State, tow: Tow) -> float:
-        """Power of winches that would take the wire in at the block: its pull there, W."""
+        """Power of winches that take the wire in at the block: tension there times rate, W."""
         pull = length(block_forces(self.model, state, tow))
         return -float(np.sum(pull * tow.length_rates))
 

@@ -1,4 +1,4 @@
-"""Order of convergence as a line is cut finer."""
+"""Order of convergence as the segments of a line become shorter."""
 
 from collections.abc import Mapping, Sequence
 
@@ -7,14 +7,14 @@ from matplotlib.figure import Figure
 
 
 def order(segments: Sequence[int], errors: Sequence[float]) -> float:
-    """Order of convergence: slope of the errors over the segments' length, both as logarithms."""
+    """Return the order of convergence: logarithmic slope of the errors over segment length."""
     return -float(np.polyfit(np.log(segments), np.log(errors), 1)[0])
 
 
 def refinement_figure(
     segments: Sequence[int], errors: Mapping[str, Sequence[float]], title: str
 ) -> Figure:
-    """Relative errors over segments, both logarithmic, beside a line of second order."""
+    """Draw relative errors over segments, both logarithmic, with a line of second order."""
     figure = Figure(figsize=(6.4, 4.6), layout='constrained')
     axes = figure.add_subplot()
     for (label, values), mark in zip(errors.items(), 'osd^v', strict=False):

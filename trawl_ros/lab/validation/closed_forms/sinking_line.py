@@ -1,4 +1,4 @@
-"""Free line that sinks in still water, against the speed at which drag balances its weight."""
+"""Free line sinking in still water, compared with the speed at which drag balances its weight."""
 
 from dataclasses import dataclass
 
@@ -16,22 +16,29 @@ from trawl_ros.solver.stepper import Motion, Stepper
 
 LENGTH, SEGMENTS = 200.0, 20
 SLOPES = (0.0, 30.0)
-"""Angles (degrees) of the line below the horizontal, its start being the upper end."""
+"""Angles (degrees) of the line below the horizontal; its start is the upper end."""
 
-SLACK = 1.0 - 2e-4
-"""Distance of the nodes over the segments' length: a line that is slack all along."""
+SLACK_NODE_DISTANCE = 1.0 - 2e-4
+"""Distance of the nodes over the segments' length, for a line that is slack everywhere."""
 
 TIME_STEP = 0.01
 
-SECONDS = 8.0
-"""After which the slowest, along the sloping line, is within 1e-6 of its last speed."""
+DURATION_S = 8.0
+"""Time (s) after which the slowest motion is within 1e-6 of its final speed."""
 
 
 @dataclass(frozen=True)
 class Sinking:
-    """``times`` (k,) s; ``velocities`` (k, 2) m/s of the line's middle along the line and
-    across it, downward both; ``uneven`` is the largest difference between two nodes' velocities
-    at the end, m/s.
+    """Velocities of a sinking line.
+
+    Attributes
+    ----------
+    times : (k,) array
+        In s.
+    velocities : (k, 2) array
+        Velocity of the line's middle along the line and across it, downward positive, m/s.
+    uneven
+        Largest difference between the velocities of two nodes at the end, m/s.
     """
 
     times: FloatArray
@@ -51,9 +58,9 @@ def terminal(slope: float) -> FloatArray:
 
 
 def fall(slope: float, times: FloatArray) -> FloatArray:
-    """Speeds (k, 2) m/s along and across a line let go from rest: U tanh(w t / m U).
+    """Speeds (k, 2) m/s along and across a line released from rest: U tanh(w t / m U).
 
-    Across the line the water it displaces is carried along (added mass 1), along it none is.
+    The mass m includes added mass across the line (coefficient 1), and none along it.
     """
     displaced = SEA.density * np.pi / 4 * WIRE['diameter_m'] ** 2
     own = WIRE['weight_in_water_n_m'] / SEA.gravity + displaced
@@ -66,13 +73,13 @@ def fall(slope: float, times: FloatArray) -> FloatArray:
 
 
 def sinking(slope: float, seconds: float) -> Sinking:
-    """A line let go from rest, as the stepper has it."""
+    """Return the motion of a line released from rest, by the stepper."""
     model = lone_line(
         {**WIRE, 'added_mass_normal': 1.0, 'added_mass_tangential': 0.0}, SEGMENTS, SEA, 'nowhere'
     )
     along = np.array([np.cos(slope), 0.0, -np.sin(slope)])
     across = np.array([-np.sin(slope), 0.0, -np.cos(slope)])
-    place = np.linspace(0.0, SLACK * LENGTH, SEGMENTS + 1)[:, None]
+    place = np.linspace(0.0, SLACK_NODE_DISTANCE * LENGTH, SEGMENTS + 1)[:, None]
     state = lying(np.array([0.0, 0.0, -50.0]) + place * along, np.zeros(3))
     tow = holding(LENGTH, np.zeros(3), np.zeros(3))
     inertia = model.pattern.matrix(mass(model, state, tow)).toarray()
@@ -93,8 +100,8 @@ def sinking(slope: float, seconds: float) -> Sinking:
 
 
 def run(small: bool) -> Findings:
-    """Let the line go level, and sloping."""
-    found = {slope: sinking(np.radians(slope), SECONDS) for slope in SLOPES}
+    """Release a level line and a sloping one."""
+    found = {slope: sinking(np.radians(slope), DURATION_S) for slope in SLOPES}
     level, sloping = (found[slope] for slope in SLOPES)
     across_level = terminal(0.0)[1]
     along, across = terminal(np.radians(SLOPES[1]))
@@ -184,7 +191,7 @@ def run(small: bool) -> Findings:
 def _drawn(found: dict[float, Sinking]) -> Figure:
     figure = Figure(figsize=(6.4, 4.2), layout='constrained')
     axes = figure.add_subplot()
-    fine = np.linspace(0.0, SECONDS, 400)
+    fine = np.linspace(0.0, DURATION_S, 400)
     for slope, line in found.items():
         exact = fall(np.radians(slope), fine)
         for part, name in enumerate(('along', 'across')):
@@ -195,7 +202,7 @@ def _drawn(found: dict[float, Sinking]) -> Figure:
                 line.times[::40], line.velocities[::40, part], 'o', ms=4, color=curve.get_color()
             )
     axes.plot([], [], 'ko', ms=4, label='model')
-    axes.set(xlabel='time [s]', ylabel='speed [m/s]', xlim=(0.0, SECONDS))
+    axes.set(xlabel='time [s]', ylabel='speed [m/s]', xlim=(0.0, DURATION_S))
     axes.grid(alpha=0.3)
     axes.legend()
     return figure

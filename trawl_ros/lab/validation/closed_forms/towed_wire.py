@@ -1,4 +1,4 @@
-"""Towed elastic wire with a lump at its end, against its equation integrated along the wire."""
+"""Towed elastic wire with a lump at its end, compared with integration along the wire."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,7 @@ LUMP_MASS, LUMP_VOLUME, LUMP_DRAG_AREA = 2000.0, 0.25, 12.0
 """kg, m³, C_D A in m²."""
 
 KNOWN = {'depth': 335.307, 'lag': 498.191, 'tension': 41_042.0}
-"""The same wire as somebody else integrated it: m, m, N, to these digits."""
+"""Independently integrated results of the same wire: m, m, N, to these digits."""
 
 UNITS = {'depth': 'm', 'lag': 'm', 'tension': 'N'}
 
@@ -32,8 +32,16 @@ CLAIMED = 20
 
 @dataclass(frozen=True)
 class Wire:
-    """Depth and lag (m) of the wire's lower end, pull (N) at its upper one; ``places`` (n, 2)
-    ahead and up (m) of points equally far apart along it, the block first.
+    """Steady state of a towed wire.
+
+    Attributes
+    ----------
+    depth, lag
+        Depth of the lower end, and its distance behind the block, m.
+    tension
+        At the upper end, N.
+    places : (n, 2) array
+        Points at equal distances along the wire, from the block on: ahead and up, m.
     """
 
     depth: float
@@ -86,7 +94,7 @@ def integrated(points: int) -> Wire:
 
 
 def modelled(segments: int) -> Wire:
-    """The steady wire as the gear model has it."""
+    """Return the steady wire of the gear model."""
     model = lone_line(WIRE, segments, SEA)
     model = loaded(model, LUMP_MASS, LUMP_VOLUME, LUMP_DRAG_AREA)
     tow = holding(LENGTH, np.zeros(3), np.zeros(3), SPEED)

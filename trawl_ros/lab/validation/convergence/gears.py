@@ -16,19 +16,18 @@ SPEED = 2.1
 """Speed through the water, m/s."""
 
 STRIDE = 1.15
-"""Largest ratio of warp lengths between a state and the one found from it."""
+"""Largest ratio of warp lengths between a state and its start."""
 
 AROUND_ZERO = ('pitch', 'slip')
-"""Angles that may well be zero: pitch passes through it as warps grow longer."""
+"""Angles that can be near zero: pitch changes sign with growing warp length."""
 
 REFERENCE = np.radians(30.0)
-"""Reference of the differences of these angles: 30°, up to which the paper compares boards
-in Fig. 5."""
+"""Reference for differences of these angles: 30°, the upper end of Fig. 5 of the paper."""
 
 
 @dataclass(frozen=True)
 class RefinementRow:
-    """Observables (lengths, observables) of one gear; NaN where it has no steady state."""
+    """Observables (lengths, observables) of one gear; NaN for lengths without a steady state."""
 
     name: str
     nodes: int
@@ -61,8 +60,10 @@ def _solved(model: GearModel, length: float, start: Equilibrium | None) -> Equil
 
 
 def differences(seen: FloatArray, fine: FloatArray) -> FloatArray:
-    """Differences from the finer gear as shares: of its value, or of `REFERENCE` for angles
-    around zero. All arrays end with the observables.
+    """Differences from the finer gear, as shares of its value.
+
+    Angles around zero are compared with `REFERENCE` instead. The last axis of each array runs over
+    the observables.
     """
     around = np.array([name.endswith(AROUND_ZERO) for name in OBSERVABLES])
     return (seen - fine) / np.where(around, REFERENCE, np.abs(fine))

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
-from trawl_ros.lab.validation.convergence.bowed_nets import COUNTS, bowed_nets
 from trawl_ros.lab.validation.convergence.gears import (
     AROUND_ZERO,
     REFERENCE,
@@ -20,10 +20,14 @@ from trawl_ros.lab.validation.convergence.gears import (
     differences,
     row,
 )
+from trawl_ros.lab.validation.convergence.time_step import BOWING_PRESSURE_PA
+from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.report.pictures import Drawing
+from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.operating_point import OperatingPoint
 
-ALLOWED = 2.0
+ALLOWED_CHANGE_PERCENT = 2.0
 """Largest difference from the finer gear, %."""
 
 FINER: Mapping[str, dict[str, Any]] = {
@@ -45,7 +49,7 @@ WORDS: Mapping[str, str] = {
 }
 
 SERIES = 12, 24, 36, 48
-"""Numerical meshes around the net of the series that is drawn."""
+"""Numerical meshes around the net in the drawn series."""
 
 DRAWN = (
     'door_spread',
@@ -75,7 +79,7 @@ def run(small: bool) -> Findings:
     series = {count: row(str(count), around_of(gear, count), lengths) for count in counts}
     series[own] = default
     series[more] = next(one for one in finer if one.name == 'net')
-    bowed_rows, bowed_table = bowed_nets(gear, (own, more) if small else COUNTS)
+    bowed_rows, bowed_table = bowed_nets(gear, (own, more) if small else BOWED_MESHES_AROUND)
     return Findings(
         rows=(*_checks(default, finer, lengths, series), *bowed_rows),
         drawings=(
@@ -100,7 +104,7 @@ def run(small: bool) -> Findings:
 
 
 def around_of(gear: GearRecord, around: int) -> GearRecord:
-    """The gear with another number of numerical meshes around the net."""
+    """Return the gear with another number of numerical meshes around the net."""
     netting = gear.netting.model_copy(update={'around': around})
     return gear.model_copy(update={'netting': netting})
 
@@ -111,7 +115,7 @@ def _checks(
     lengths: Sequence[float],
     series: Mapping[int, RefinementRow],
 ) -> Iterator[MeasuredValue]:
-    """One check for each way of refining and warp length: the worst of all observables."""
+    """Return one check per refinement and warp length: the worst of all observables."""
     for fine in finer:
         for k, length in enumerate(lengths):
             shares = 100.0 * np.abs(differences(default.seen[k], fine.seen[k]))
@@ -120,8 +124,8 @@ def _checks(
             note = f'It is {name}.'
             if np.isnan(shares[worst]):
                 note = 'One of the two gears has no steady state here.'
-            elif shares[worst] > ALLOWED:
-                beyond = int((shares > ALLOWED).sum())
+            elif shares[worst] > ALLOWED_CHANGE_PERCENT:
+                beyond = int((shares > ALLOWED_CHANGE_PERCENT).sum())
                 note = (
                     f'It is {name}, {beyond} of {len(OBSERVABLES)} observables differ by more; '
                     + _reason(fine, worst, k, series)
@@ -131,14 +135,14 @@ def _checks(
                 f'{length:g} m of warp',
                 float(shares[worst]),
                 '%',
-                at_most(ALLOWED),
+                at_most(ALLOWED_CHANGE_PERCENT),
                 note,
                 key=f'{fine.name}_{length:g}',
             )
 
 
 def _reason(fine: RefinementRow, worst: int, k: int, series: Mapping[int, RefinementRow]) -> str:
-    """Reason why an observable has not converged, by the series of nets."""
+    """Return why an observable has not converged, by the series of nets."""
     if fine.name in ('warp', 'bridle'):
         return f'the {fine.name} is cut too coarsely for it.'
     counts = sorted(series)
@@ -153,7 +157,7 @@ def _reason(fine: RefinementRow, worst: int, k: int, series: Mapping[int, Refine
 def _tables(
     default: RefinementRow, fine: RefinementRow, lengths: Sequence[float]
 ) -> Iterator[TextTable]:
-    """Every observable beside that of the gear with everything finer."""
+    """Compare every observable with that of the gear with everything finer."""
     for k, length in enumerate(lengths):
         shares = 100.0 * differences(default.seen[k], fine.seen[k])
         plain = 100.0 * (default.seen[k] / fine.seen[k] - 1.0)
@@ -191,13 +195,13 @@ def _figure(series: Mapping[int, RefinementRow], lengths: Sequence[float], own: 
         shares = 100.0 * differences(
             np.array([series[count].seen[k] for count in counts]), series[counts[-1]].seen[k]
         )
-        axes.axhspan(-ALLOWED, ALLOWED, color='0.92')
+        axes.axhspan(-ALLOWED_CHANGE_PERCENT, ALLOWED_CHANGE_PERCENT, color='0.92')
         axes.axvline(own, color='0.5', linestyle=':')
         for name in DRAWN:
             label = name.removeprefix('port_').replace('_', ' ')
             axes.plot(counts, shares[:, OBSERVABLES.index(name)], 'o-', markersize=4, label=label)
         axes.set_xticks(counts)
-        axes.set_yscale('symlog', linthresh=ALLOWED)
+        axes.set_yscale('symlog', linthresh=ALLOWED_CHANGE_PERCENT)
         axes.set_yticks(TICKS, [f'{tick:g}' for tick in TICKS])
         axes.minorticks_off()
         axes.set_xlabel('numerical meshes around the net')
@@ -206,6 +210,101 @@ def _figure(series: Mapping[int, RefinementRow], lengths: Sequence[float], own: 
     panels[0].set_ylabel('difference from the finest net (%)')
     figure.legend(*panels[0].get_legend_handles_labels(), loc='outside right center', frameon=False)
     return figure
+
+
+BOWED_WARP_M = 500.0
+"""Warp length of the comparison of bowed with straight twine."""
+
+BOWED_MESHES_AROUND = 36, 48, 60, 72, 96
+"""Numbers of numerical meshes around the net of that comparison."""
+
+BOWED_TOLERANCE_DEG = 0.5
+"""Largest difference of an angle from that of the finest net."""
+
+BOWED_TOLERANCE_PERCENT = 2.0
+"""Largest difference of a length or tension from that of the finest net."""
+
+ANGLES = 'port_attack', 'port_inclination', 'port_roll'
+SHOWN = 'door_spread', 'port_door_depth', 'vertical_opening', 'warp_tension', *ANGLES
+KINDS = {'straight': 0.0, 'bowed': BOWING_PRESSURE_PA}
+
+
+def bowed_nets(
+    gear: GearRecord, counts: Sequence[int] = BOWED_MESHES_AROUND
+) -> tuple[list[MeasuredValue], TextTable]:
+    """Solve the gear with all nets, cold, and compare the default net with the finest one."""
+    seen = {
+        kind: {count: _observed(_netted(gear, count, pressure)) for count in counts}
+        for kind, pressure in KINDS.items()
+    }
+    return list(_bowed_checks(seen, gear.netting.around)), _table(seen)
+
+
+def _netted(gear: GearRecord, around: int, pressure: float) -> GearRecord:
+    update = {'around': around, 'bowing_pressure_pa': pressure}
+    return gear.model_copy(update={'netting': gear.netting.model_copy(update=update)})
+
+
+def _observed(gear: GearRecord) -> FloatArray:
+    """Observables of `SHOWN`; angles in degrees, tension in kN."""
+    seen = find_equilibrium(
+        build_model(gear), OperatingPoint(BOWED_WARP_M, BOWED_WARP_M, SPEED)
+    ).observables
+    values = np.array([getattr(seen, name) for name in SHOWN])
+    values[-len(ANGLES) :] = np.degrees(values[-len(ANGLES) :])
+    values[SHOWN.index('warp_tension')] /= 1000.0
+    return values
+
+
+def _bowed_checks(seen: dict[str, dict[int, FloatArray]], own: int) -> Iterator[MeasuredValue]:
+    for kind, by_count in seen.items():
+        finest = max(by_count)
+        others = f'from the net of {finest} meshes around, twine {kind}, {BOWED_WARP_M:g} m of warp'
+        off = {count: np.abs(values - by_count[finest]) for count, values in by_count.items()}
+        shares = 100.0 * off[own][: -len(ANGLES)] / by_count[finest][: -len(ANGLES)]
+        yield MeasuredValue(
+            f'largest difference of spread, depth, opening or tension {others}',
+            float(shares.max()),
+            '%',
+            at_most(BOWED_TOLERANCE_PERCENT),
+            _series(by_count, int(shares.argmax())),
+            key=f'sizes_{kind}',
+        )
+        worst = len(SHOWN) - len(ANGLES) + int(off[own][-len(ANGLES) :].argmax())
+        enough = min(
+            count for count in off if off[count][-len(ANGLES) :].max() <= BOWED_TOLERANCE_DEG
+        )
+        yield MeasuredValue(
+            f'largest difference of α, δ or roll {others}',
+            float(off[own][worst]),
+            '°',
+            at_most(BOWED_TOLERANCE_DEG),
+            f'{_series(by_count, worst)} The fewest of these with all three within '
+            f'{BOWED_TOLERANCE_DEG:g}°: {enough}.',
+            key=f'angles_{kind}',
+        )
+
+
+def _series(by_count: dict[int, FloatArray], column: int) -> str:
+    """Sentence with one observable over the meshes around."""
+    values = ', '.join(f'{observed[column]:.2f}' for observed in by_count.values())
+    counts = ', '.join(map(str, by_count))
+    return f'{SHOWN[column]} with {counts} numerical meshes around is {values}.'
+
+
+def _table(seen: dict[str, dict[int, FloatArray]]) -> TextTable:
+    rows = [
+        (kind, str(count), *(f'{value:.2f}' for value in values))
+        for kind, by_count in seen.items()
+        for count, values in by_count.items()
+    ]
+    head = ('twine', 'around', 'spread (m)', 'door depth (m)', 'opening (m)', 'tension (kN)')
+    return TextTable(
+        f'{BOWED_WARP_M:g} m of warp, {SPEED:g} m/s, over meshes around the net; bowed: '
+        f'under {BOWING_PRESSURE_PA:g} Pa',
+        (*head, 'α (°)', 'δ (°)', 'roll (°)'),
+        tuple(rows),
+    )
 
 
 CASE = ValidationCase('refinement', 'The default gear beside finer ones', run)

@@ -1,7 +1,7 @@
 """Order of convergence of the time stepper, on manoeuvres with hauling."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,34 +12,130 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
-from trawl_ros.lab.validation.convergence.manoeuvres import (
-    START,
-    SteppedManoeuvre,
-    smooth_haul,
-    winch_ramp,
-)
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
+from trawl_ros.model.observables import observe
+from trawl_ros.model.state import State, Tow
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.report.pictures import Drawing
-from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation, tow_of
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
+from trawl_ros.solver.stepper import Stepper, at_rest
 
-ORDER = 1.9
-"""Observed order at which a method counts as of second order: its error falls to 27 % or less
-where the step is halved."""
+SAMPLE_S = 0.8
+"""Time (s) between compared instants; a multiple of every step."""
+
+START = Command(port_length=500.0, starboard_length=500.0, speed=2.1)
+
+HAULING = np.array([1.0, 0.8])
+"""Share of the largest speed with which the port and starboard winch haul."""
+
+SPEED_GAIN_M_S = 0.2
+"""Increase of the ship's speed during the manoeuvre, m/s."""
+
+
+@dataclass(frozen=True)
+class SteppedManoeuvre:
+    """A manoeuvre at one time step.
+
+    Attributes
+    ----------
+    step
+        Time step, s.
+    seen : (samples, observables) array
+        Observables.
+    places : (samples, nodes and boards, 3) array
+        Places of all nodes and boards, m.
+    tension
+        Lowest tension of any bar at any sample, N.
+    """
+
+    step: float
+    seen: FloatArray
+    places: FloatArray
+    tension: float
+
+
+def smooth_tow(model: GearModel, tow: Tow, t: float, duration: float) -> Tow:
+    """Towing boundary at a time of a smooth manoeuvre.
+
+    Both winches haul at a rate of one cosine wave, from rest to their largest speed and back. The
+    ship gains speed along half a cosine wave.
+    """
+    wave = 2 * np.pi * t / duration
+    hauled = 0.5 * model.gear.winch.max_speed_m_s * HAULING
+    way = 0.5 * SPEED_GAIN_M_S * (t - duration / np.pi * np.sin(0.5 * wave))
+    faster = 0.5 * SPEED_GAIN_M_S * (1.0 - np.cos(0.5 * wave))
+    ahead = np.array([1.0, 0.0, 0.0])
+    return replace(
+        tow,
+        blocks=tow.blocks + t * tow.block_velocities + way * ahead,
+        block_velocities=tow.block_velocities + faster * ahead,
+        lengths=tow.lengths - hauled * (t - np.sin(wave) * duration / (2 * np.pi)),
+        length_rates=-hauled * (1.0 - np.cos(wave)),
+    )
+
+
+def smooth_haul(
+    model: GearModel, start: Equilibrium, step: float, duration: float
+) -> SteppedManoeuvre:
+    """Run the stepper through the smooth manoeuvre, from a steady state."""
+    stepper, motion = Stepper(model), at_rest(start.state)
+    each = round(SAMPLE_S / step)
+    seen, places, tension = [], [], np.inf
+    for k in range(1, round(duration / step) + 1):
+        tow = smooth_tow(model, start.tow, k * step, duration)
+        motion = stepper.step(motion, tow, step)
+        if k % each == 0:
+            seen.append(observe(model, motion.state, tow).array())
+            places.append(_places(motion.state))
+            tension = min(tension, float(bar_tensions(model, motion.state, tow).min()))
+    return SteppedManoeuvre(step, np.array(seen), np.array(places), tension)
+
+
+def winch_ramp(model: GearModel, step: float, duration: float, hauled: float) -> SteppedManoeuvre:
+    """Simulate hauling ``hauled`` metres to port and fewer to starboard while the ship speeds up.
+
+    Winches and ship accelerate as the gear file says, with abrupt starts and stops.
+    """
+    simulation = Simulation(model, START, period=0.5 * step)
+    simulation.command = Command(
+        START.port_length - hauled * HAULING[0],
+        START.starboard_length - hauled * HAULING[1],
+        START.speed + 0.5 * SPEED_GAIN_M_S,
+    )
+    each = round(2 * SAMPLE_S / step)
+    seen, places, tension = [], [], np.inf
+    for k in range(1, round(2 * duration / step) + 1):
+        now = simulation.advance()
+        if k % each == 0:
+            tow = tow_of(model, now.ship, now.winches)
+            seen.append(observe(model, now.motion.state, tow).array())
+            places.append(_places(now.motion.state))
+            tension = min(tension, float(bar_tensions(model, now.motion.state, tow).min()))
+    return SteppedManoeuvre(step, np.array(seen), np.array(places), tension)
+
+
+def _places(state: State) -> FloatArray:
+    return np.concatenate([state.nodes, state.board_positions])
+
+
+MIN_SECOND_ORDER = 1.9
+"""Smallest order that counts as second order: halving the step leaves 27 % of the error."""
 
 DEFAULT_STEP = 0.2
 """Step (s) of a tow at the simulation's default period."""
 
 
-SLACK = 10.0
+SLACK_TENSION_N = 10.0
 """Tension (N) below which a bar of netting counts as slack."""
 
-TAUT = 1.0
-"""Lowest tension (N) at which nothing has gone slack."""
+TAUT_TENSION_N = 1.0
+"""Lowest tension (N) of a net that counts as taut throughout."""
 
-BOWING = 317.0
+BOWING_PRESSURE_PA = 317.0
 """Load (Pa) under which twine bows in the gear of which nothing goes slack: that of water on meshes
 towed at 2.1 m/s with bars at 20° to the flow."""
 
@@ -80,7 +176,7 @@ class Convergence:
         return norm
 
     def order(self, errors: FloatArray) -> float:
-        """Slope of errors (steps,) over the step, both as logarithms."""
+        """Return the slope of errors (steps,) over the step, both logarithmic."""
         return float(np.polyfit(np.log(self.steps), np.log(errors), 1)[0])
 
     def orders(self) -> FloatArray:
@@ -111,7 +207,7 @@ def run(small: bool) -> Findings:
     if small:
         coarse = gear.netting.model_copy(update={'around': 12})
         gear = gear.model_copy(update={'netting': coarse})
-    bowed = gear.netting.model_copy(update={'bowing_pressure_pa': BOWING})
+    bowed = gear.netting.model_copy(update={'bowing_pressure_pa': BOWING_PRESSURE_PA})
     taut = _smooth(build_model(gear.model_copy(update={'netting': bowed})), size)
     model = build_model(gear)
     smooth = _smooth(model, size)
@@ -126,7 +222,7 @@ def run(small: bool) -> Findings:
             MeasuredValue(
                 'order in the root mean square of all observables, smooth inputs',
                 smooth.order(smooth.norm),
-                target=at_least(ORDER),
+                target=at_least(MIN_SECOND_ORDER),
                 note=f'With bowed twine, of which nothing goes slack, it is '
                 f'{taut.order(taut.norm):.2f}. Here bars of netting go slack and taut, and their '
                 'force bends within a short extension.',
@@ -135,13 +231,13 @@ def run(small: bool) -> Findings:
             MeasuredValue(
                 'order in the median place of all nodes and boards, smooth inputs',
                 smooth.order(np.median(smooth.places, 1)),
-                target=at_least(ORDER),
+                target=at_least(MIN_SECOND_ORDER),
                 key='smooth_median_place',
             ),
             MeasuredValue(
                 'order in the root mean square of all observables, winch ramp',
                 ramp.order(ramp.norm),
-                target=at_least(ORDER),
+                target=at_least(MIN_SECOND_ORDER),
                 note='Ship and winches accelerate abruptly: the second derivative of what they '
                 'impose jumps, and a single observable need not show the order.',
                 key='ramp_norm',
@@ -171,9 +267,10 @@ def run(small: bool) -> Findings:
             f'at several steps and held against one of {size.smooth_steps[-1]:g} s. The order of '
             'a method shows only where its inputs have as many derivatives, so the winches haul '
             'with one wave of a cosine, up to their largest speed. It is towed by a gear of which '
-            f'nothing goes slack, since its twine bows under {BOWING:g} Pa and so pulls however '
-            'close its ends come, and by the default gear, some of whose netting hangs slack. The '
-            "second manoeuvre is the simulation's own: acceleration sets in and ends abruptly. "
+            f'nothing goes slack, since its twine bows under {BOWING_PRESSURE_PA:g} Pa and so '
+            'pulls however close its ends come, and by the default gear, some of whose netting '
+            "hangs slack. The second manoeuvre is the simulation's own: acceleration sets in and "
+            'ends abruptly. '
             'With the default gear the lowest order among all observables is '
             f'{smooth.orders().min():.2f}, and that of the largest error of all places '
             f'{smooth.order(smooth.places.max(1)):.2f}. {_flapping(model, smooth)}'
@@ -190,12 +287,12 @@ def _smooth(model: GearModel, size: ManoeuvreSize) -> Convergence:
 
 
 def _taut_rows(taut: Convergence) -> Iterator[MeasuredValue]:
-    """Orders where nothing goes slack, and the tension that says so."""
+    """Rows on the orders of a gear without slack bars, and on its lowest tension."""
     yield MeasuredValue(
         'lowest tension of any bar at any time, smooth inputs, bowed twine',
         taut.tension,
         'N',
-        at_least(TAUT),
+        at_least(TAUT_TENSION_N),
         'Nothing goes slack.',
         key='taut_tension',
     )
@@ -203,7 +300,7 @@ def _taut_rows(taut: Convergence) -> Iterator[MeasuredValue]:
     yield MeasuredValue(
         'lowest order among all observables, smooth inputs, nothing slack',
         float(orders.min()),
-        target=at_least(ORDER),
+        target=at_least(MIN_SECOND_ORDER),
         note=f'It is that of {OBSERVABLES[int(orders.argmin())]}. The method, generalised-α, is of '
         'second order.',
         key='taut_every_observable',
@@ -211,14 +308,14 @@ def _taut_rows(taut: Convergence) -> Iterator[MeasuredValue]:
     yield MeasuredValue(
         'lowest order among the places of all nodes and boards, smooth inputs, nothing slack',
         float(taut.place_orders().min()),
-        target=at_least(ORDER),
+        target=at_least(MIN_SECOND_ORDER),
         note=f'Each of {taut.places.shape[1]} on its own.',
         key='taut_every_place',
     )
 
 
 def _flapping(model: GearModel, found: Convergence) -> str:
-    """Sentence on the point with the largest error at the shortest step, and on its slack lines."""
+    """Return a sentence on the point with the largest error at the shortest step."""
     worst = int(found.places[-1].argmax())
     if worst >= model.nodes:
         return 'The largest error is that of a board.'
@@ -231,9 +328,9 @@ def _flapping(model: GearModel, found: Convergence) -> str:
     share = float(np.median(found.places[-1]) / found.places[-1, worst])
     return (
         f'The largest error at {found.steps[-1]:g} s is that of {part}, of whose {len(held)} bars '
-        f'{int((held < SLACK).sum())} pull with less than {SLACK:.0f} N; the median of all points '
-        f'errs by {share:.2g} times as much. Slack netting flaps, and bars that jerk taut have no '
-        'smooth motion for a higher order to show on.'
+        f'{int((held < SLACK_TENSION_N).sum())} pull with less than {SLACK_TENSION_N:.0f} N; the '
+        f'median of all points errs by {share:.2g} times as much. Slack netting flaps, and bars '
+        'that jerk taut have no smooth motion for a higher order to show on.'
     )
 
 

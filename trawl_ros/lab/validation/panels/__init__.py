@@ -1,1 +1,1 @@
-"""Netting panels in a stream: published tests, and the model beside them."""
+"""Netting panels in a stream: published tests, compared with the model."""

@@ -66,7 +66,7 @@ class PanelRecord(Record):
 
 
 class KnotRecord(Record):
-    """Drag of knotted netting over that of knotless netting, less one, at an angle."""
+    """Drag of knotted netting over that of knotless netting, minus one, at an angle."""
 
     name: str
     source: str
@@ -76,14 +76,14 @@ class KnotRecord(Record):
 
 
 class UnusedPanel(Record):
-    """Source that was looked at and not used, and the reason."""
+    """Source that was examined and not used, with the reason."""
 
     source: str
     why: str
 
 
 class PublishedPanels(Record):
-    """All published panels: sources by name, panels, what knots add, and what was not used."""
+    """All published panels: sources by name, panels, effect of knots, and unused sources."""
 
     sources: dict[str, PanelSource]
     panels: Annotated[tuple[PanelRecord, ...], Field(min_length=1)]

@@ -29,8 +29,10 @@ NET_FINENESS_FACTOR = 0.5
 
 @dataclass(frozen=True)
 class WholeNet:
-    """Net with its area of twine (m²), and its drag (N) by speed (knots), as built and in
-    equilibrium; speeds without a steady state are missing there.
+    """Net with its twine area (m²), and its drag (N) by towing speed (knots).
+
+    ``built`` is the drag of the net as drawn, ``towed`` that in equilibrium. Speeds without a
+    steady state are missing in ``towed``.
     """
 
     name: str
@@ -48,7 +50,7 @@ class WholeNet:
 
     @property
     def inside(self) -> list[bool]:
-        """Flags of the speeds as built at which the drag is as large as asked for."""
+        """True for each speed at which the drag as built is within the range asked for."""
         return [
             LEAST_SHARE_OF_REID * reid(self.area, knots)
             <= drag

@@ -1,7 +1,8 @@
-"""Readings of the board's frame, compared by places that can be towed and by section IV.
+"""Readings of the board's frame, compared by the states that can be towed and by section IV.
 
-The model has one reading (docs/model.md). Another one differs from it by the signs of some printed
-coefficients, so it is that board with these coefficients reversed, rigged again by the same search.
+The model has one reading (docs/model.md). Another reading differs from it by the signs of some
+printed coefficients. It is therefore the same board with these coefficients reversed, and with its
+fastening points trimmed by the same search.
 """
 
 from collections.abc import Iterator
@@ -96,7 +97,7 @@ class Judgement:
 
 
 def run(small: bool) -> Findings:
-    """Rig the gear again for each reading, tow it, and evaluate the claims on its boards."""
+    """Trim the gear for each reading, tow it, and evaluate the claims on its boards."""
     rigging, model = FEW if small else Rigging(), paper_model(True)
     names = list(READINGS)[:2] if small else READINGS
     found = [judged(name, read_as(model, READINGS[name]), rigging) for name in names]
@@ -136,7 +137,7 @@ def read_as(model: GearModel, reversed_names: tuple[str, ...]) -> GearModel:
 
 
 def judged(name: str, model: GearModel, rigging: Rigging) -> Judgement:
-    """Rig a reading, count the places that can be towed, and evaluate the claims."""
+    """Trim a reading, count the states that can be towed, and evaluate the claims."""
     places = list(product(rigging.towed_speeds, rigging.towed_warps))
     try:
         model = trim_over_range(

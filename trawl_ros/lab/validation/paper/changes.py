@@ -1,4 +1,4 @@
-"""Changes of observables by turned boards, in percent and degrees."""
+"""Changes of observables by rotated boards, in percent and degrees."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -70,7 +70,7 @@ class Changes:
         )
 
     def against(self, agree: Callable[[str, float], bool], *quantities: str) -> tuple[float, str]:
-        """Number of the six turns that agree, and the others with their changes."""
+        """Number of the six rotations that agree, and a sentence on the others."""
         odd = [turn for turn in self.turned if not agree(*turn)]
         sentence = '; '.join(
             f'{label(*turn)}: '

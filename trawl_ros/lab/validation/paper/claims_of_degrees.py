@@ -1,4 +1,4 @@
-"""Claims of section IV.D on 6-DOF and 3-DOF boards beside the sea trial, Fig. 13 to 16."""
+"""Claims of section IV.D on 6-DOF and 3-DOF boards against the sea trial, Fig. 13 to 16."""
 
 import numpy as np
 
@@ -9,8 +9,8 @@ from trawl_ros.lab.validation.paper.comparison import Comparison, column
 ERRORS = {'door_spread': 4.8, 'door_depth': 4.5, 'net_depth': 7.4, 'warp_tension': 2.6}
 """Errors of the 6-DOF model that the paper reports, %."""
 
-CLOSE = 5.0
-"""Limit of close, %: the paper's own error against its trial."""
+CLOSE_ERROR_PERCENT = 5.0
+"""Largest error that counts as close, %: the paper's own error against its trial."""
 
 DEPTHS = ('door_depth', 'net_depth')
 
@@ -32,7 +32,7 @@ def _words(channel: str) -> str:
 
 
 def _bias(seen: Comparison, channel: str) -> float:
-    """Mean of the 6-DOF predictions over that of the readings, less one, %."""
+    """Mean of the 6-DOF predictions over that of the readings, minus one, %."""
     one = column(channel)
     usable = np.isfinite(seen.trial_six[:, one])
     means = seen.trial_six[usable, one].mean(), seen.trial[usable, one].mean()
@@ -74,7 +74,7 @@ def _close(seen: Comparison) -> Claim:
                 f'mean difference of the {_words(channel)}, 3-DOF to 6-DOF',
                 apart(channel),
                 '%',
-                at_most(CLOSE),
+                at_most(CLOSE_ERROR_PERCENT),
                 'the point keeps its lift level at every warp length, while a board that leans '
                 'gives part of it up.',
                 key=f'close_{channel}',
@@ -204,7 +204,7 @@ def _gap(seen: Comparison) -> list[Claim]:
                 'mean error of the four quantities, 6-DOF boards',
                 float(np.mean([seen.error(seen.trial_six, channel) for channel in ERRORS])),
                 '%',
-                at_most(CLOSE),
+                at_most(CLOSE_ERROR_PERCENT),
                 f'most of it is in the {_words(worst)}: {seen.error(seen.trial_six, worst):.1f} %.',
                 key='six_in_all',
             ),

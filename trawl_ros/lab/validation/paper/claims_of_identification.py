@@ -9,18 +9,18 @@ from trawl_ros.lab.validation.paper.refit import PaperRefit
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 WORKING = np.radians(np.linspace(0.0, 30.0, 121))
-"""Attack angles of Fig. 5 that the paper speaks of."""
+"""Attack angles of Fig. 5 that the paper discusses."""
 
 UPPER = np.radians(np.linspace(15.0, 30.0, 61))
 
-ALIKE = 0.1
+GOOD_AGREEMENT_SHARE = 0.1
 """Deviation of a coefficient that the paper calls good agreement."""
 
-EARLY = 1.0 / 3.0
-"""The initial stage: this part of all iterations."""
+INITIAL_STAGE_SHARE = 1.0 / 3.0
+"""Share of the iterations that counts as the initial stage."""
 
-UNLIKE = 10.0
-"""Sensitivities that lie further apart than this factor are unlike."""
+UNLIKE_FACTOR = 10.0
+"""Ratio above which two sensitivities count as different."""
 
 
 def identification_claims(fit: PaperRefit) -> list[Claim]:
@@ -31,11 +31,11 @@ def identification_claims(fit: PaperRefit) -> list[Claim]:
 def _objective(fit: PaperRefit) -> list[Claim]:
     objective = fit.objective
     falls = -np.diff(objective)
-    early = max(1, int(np.ceil(EARLY * len(falls))))
+    early = max(1, int(np.ceil(INITIAL_STAGE_SHARE * len(falls))))
     plateaus = int(np.sum((falls[:-1] < 0.5 * falls[1:])[:early]))
     # An exponential decay by as much as the paper's, over as many iterations, has done this
     # part of it in the initial stage.
-    usual = (1.0 - 3.0**-EARLY) / (1.0 - 1.0 / 3.0)
+    usual = (1.0 - 3.0**-INITIAL_STAGE_SHARE) / (1.0 - 1.0 / 3.0)
     scatter = fit.estimate.noise_scale
     return [
         claim(
@@ -80,7 +80,7 @@ def _objective(fit: PaperRefit) -> list[Claim]:
             MeasuredValue(
                 'largest over smallest sensitivity of the readings to directions of the twelve',
                 fit.estimate.condition_number,
-                target=at_least(UNLIKE),
+                target=at_least(UNLIKE_FACTOR),
                 note='in units of what was known of each before, the data see all twelve alike.',
                 key='condition',
             ),
@@ -169,7 +169,7 @@ def _deviations(fit: PaperRefit) -> list[Claim]:
             MeasuredValue(
                 f'largest deviation of C_x^F, {beside}',
                 drag.max(),
-                target=at_most(ALIKE),
+                target=at_most(GOOD_AGREEMENT_SHARE),
                 note=why('a1', worst),
                 key='drag_away',
             ),
@@ -193,7 +193,7 @@ def _deviations(fit: PaperRefit) -> list[Claim]:
             MeasuredValue(
                 f'largest deviation of C_y^F, {beside}',
                 lift.max(),
-                target=at_most(ALIKE),
+                target=at_most(GOOD_AGREEMENT_SHARE),
                 note=why('a2', worst_lift),
                 key='lift_away',
             ),

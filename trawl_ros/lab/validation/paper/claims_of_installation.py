@@ -10,8 +10,8 @@ from trawl_ros.lab.validation.paper.sweeps import TURN
 SPAN = (5.0, 10.0)
 """The paper's 5 to 10 %."""
 
-LITTLE = 0.5
-"""An effect below this part of the largest one counts as little."""
+SMALL_EFFECT_SHARE = 0.5
+"""Share of the largest effect below which an effect counts as small."""
 
 RESULTS = ('door_spread', 'door_depth', 'vertical_opening', 'warp_tension')
 
@@ -40,7 +40,7 @@ def _zeta(changes: Changes) -> Claim:
         MeasuredValue(
             'most that ζ moves α and δ over most that ε does',
             against,
-            target=at_most(LITTLE),
+            target=at_most(SMALL_EFFECT_SHARE),
             note='δ of eq. 38 is the tilt in any direction; turning about y tilts fore and aft.',
             key='zeta_angles',
         ),

@@ -26,12 +26,13 @@ from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.predict import Prediction, Predictor
 
 STAND_STILL = EstimatorOptions(tolerance=1e9)
-"""No step is as large as this many std: windows are taken in, the coefficients stay."""
+"""Options with a tolerance so large that windows are added without changing the coefficients."""
 
 
 class _Remembering(Predictor):
-    """Predictor that keeps the boards' mean attack angle (rad), newest for each input: of the
-    estimate, once the fit has converged.
+    """Predictor that keeps the boards' mean attack angle (rad) of the newest prediction per input.
+
+    Once the fit has converged, these are the angles of the estimate.
     """
 
     def __init__(self, model: GearModel) -> None:
@@ -56,10 +57,10 @@ class _Remembering(Predictor):
 
 @dataclass(frozen=True)
 class PaperRefit:
-    """The fit, the objective of eq. 35 at the start and after each iteration, and what made the
-    trial.
+    """Fit, prior and true coefficients of the trial of the paper.
 
-    ``attack`` has the least and largest mean α (rad) of the boards in the fitted states.
+    ``objective`` is that of eq. 35 at the start and after each iteration. ``attack`` holds the
+    smallest and largest mean α (rad) of the boards in the fitted states.
     """
 
     estimate: Estimate

@@ -1,7 +1,7 @@
-"""Steady states that the remade figures of section IV share.
+"""Steady states shared by the reproduced figures of section IV.
 
-The paper prints neither speed nor warp length of Fig. 6 to 12; these are the ones at which the
-gear file's fastening points were trimmed.
+The paper prints neither speed nor warp length of Fig. 6 to 12. These are the values at which the
+fastening points of the gear file were trimmed.
 """
 
 from collections.abc import Mapping, Sequence
@@ -30,19 +30,19 @@ LENGTHS = tuple(float(length) for length in range(200, 901, 50))
 FEW_LENGTHS = (200.0, 550.0, 900.0)
 
 INSTALLATION = ('epsilon', 'zeta', 'eta')
-"""ε, ζ, η: turns of the board about its z, y and x axes against its rigging."""
+"""ε, ζ, η: rotations of the board about its z, y and x axes relative to its rigging."""
 
 TURN = 5.0
-"""The turn (°) that section IV.C speaks of."""
+"""Rotation (°) discussed in section IV.C."""
 
 TURNS = (-TURN, -TURN / 2, 0.0, TURN / 2, TURN)
 FEW_TURNS = (-TURN, 0.0, TURN)
 
-FASTER = 1.05
-"""Factor on the speed that shows what pull alone does to the mouth."""
+SPEED_FACTOR = 1.05
+"""Factor on the speed that shows the effect of drag alone on the mouth."""
 
-COARSER = 2
-"""In the small version the net is so many times coarser."""
+COARSENING_FACTOR = 2
+"""Factor by which the net of the small version is coarser."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,9 @@ def gear(small: bool) -> GearRecord:
     record = load_gear('kaifuha')
     if not small:
         return record
-    netting = record.netting.model_copy(update={'around': record.netting.around // COARSER})
+    netting = record.netting.model_copy(
+        update={'around': record.netting.around // COARSENING_FACTOR}
+    )
     return record.model_copy(update={'netting': netting})
 
 
@@ -111,7 +113,7 @@ def sighting(model: GearModel, steady: SteadyState) -> Sighting:
 
 
 def warp_sweep(model: GearModel, lengths: Sequence[float], speed: float) -> list[SteadyState]:
-    """Steady states at several warp lengths, each started from the one before."""
+    """Return steady states at several warp lengths, each started from the one before."""
     found: list[SteadyState] = []
     for length in lengths:
         start = found[-1].equilibrium if found else None
@@ -141,5 +143,5 @@ def installation_sweep(
 
 
 def faster(model: GearModel) -> Sighting:
-    """Sighting of the gear as it is, at a somewhat higher speed."""
-    return sighting(model, steady_state(model, WARP_LENGTH, FASTER * SPEED))
+    """Return the gear without rotations at a somewhat higher speed."""
+    return sighting(model, steady_state(model, WARP_LENGTH, SPEED_FACTOR * SPEED))

@@ -20,7 +20,7 @@ BAG = ('bags', 'sea_trial')
 SCENARIO = ('bags', 'sea_trial.yaml')
 
 FEWER = 4
-"""In the small version every so many states are used."""
+"""The small version uses one state in this many."""
 
 
 @cache
@@ -50,9 +50,7 @@ def measured(windows: Sequence[SteadyWindow]) -> FloatArray:
 
 
 def widest_speed(windows: Sequence[SteadyWindow]) -> tuple[float, list[int]]:
-    """Speed (m/s) at which the trial covers the widest range of warp lengths, and the
-    windows towed at it.
-    """
+    """Speed (m/s) with the widest range of warp lengths, and the indices of its windows."""
     groups: dict[float, list[int]] = defaultdict(list)
     for row, window in enumerate(windows):
         groups[round(window.means['speed'], 1)].append(row)

@@ -6,9 +6,15 @@ from contextlib import closing
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.lab.reference_codes.history import Apart, History, apart
-from trawl_ros.lab.reference_codes.manoeuvre import WireManoeuvre, haul_and_turn, short_manoeuvre
-from trawl_ros.lab.reference_codes.moordyn_wire import SETTLING, MoorDynWire
+from trawl_ros.lab.reference_codes.manoeuvre import (
+    Apart,
+    History,
+    WireManoeuvre,
+    apart,
+    haul_and_turn,
+    short_manoeuvre,
+)
+from trawl_ros.lab.reference_codes.moordyn_wire import SETTLING_S, MoorDynWire
 from trawl_ros.lab.reference_codes.own_wire import own_history, own_model, own_steady
 from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, WireSteadyState
 from trawl_ros.lab.report.measured import MeasuredValue, at_most, within_share
@@ -18,8 +24,8 @@ from trawl_ros.report.pictures import Drawing
 
 SEGMENTS = 20
 
-SHARE = 0.01
-"""Largest difference that is asked for, as a share."""
+MAX_DIFFERENCE = 0.01
+"""Largest allowed difference, as a share."""
 
 OWN_STEP = 0.25
 """Step of this package's stepper, s; steps of 0.1 s change its histories by 1.2e-4 at most."""
@@ -40,7 +46,7 @@ def run(small: bool) -> Findings:
     own = own_history(model, start, manoeuvre, OWN_STEP)
     lump = (INTEGRATED.lag, INTEGRATED.depth)
     with closing(MoorDynWire(WIRE, SEGMENTS, SCHEME, STEP, lump)) as wire:
-        theirs = wire.settle(0.3 * SETTLING if small else SETTLING)
+        theirs = wire.settle(0.3 * SETTLING_S if small else SETTLING_S)
         peer = wire.follow(manoeuvre)
     difference = apart(own, peer)
     return Findings(
@@ -75,7 +81,7 @@ def _steady_checks(ours: WireSteadyState, theirs: WireSteadyState) -> list[Measu
             f'steady {name}',
             getattr(ours, name),
             unit,
-            within_share(SHARE, of=getattr(theirs, name)),
+            within_share(MAX_DIFFERENCE, of=getattr(theirs, name)),
             f'Expected is what {PEER} settles at.',
             key=f'steady_{name}',
         )
@@ -88,7 +94,7 @@ def _history_checks(difference: Apart) -> list[MeasuredValue]:
         MeasuredValue(
             f"largest difference of {name} over the manoeuvre, share of {PEER}'s value",
             getattr(difference, name),
-            target=at_most(SHARE),
+            target=at_most(MAX_DIFFERENCE),
             note='Over all instants, each against the value at the same instant.',
             key=f'{name}_history',
         )

@@ -9,12 +9,12 @@ from trawl_ros.lab.validation.cases import ValidationCase
 
 SEGMENTS = 20
 
-SHARE = 0.01
-"""Largest difference that is asked for, as a share."""
+MAX_DIFFERENCE = 0.01
+"""Largest allowed difference, as a share."""
 
 
 def run(small: bool) -> Findings:
-    """Solve the same steady tow in both programs; nothing is left out when ``small``."""
+    """Solve the same steady tow in both programs; ``small`` makes no difference."""
     _, ours = own_steady(WIRE, own_model(WIRE, SEGMENTS))
     theirs = MoorPyWire(WIRE).solve()
     names = (('depth', 'm'), ('lag', 'm'), ('tension', 'N'))
@@ -39,7 +39,7 @@ def run(small: bool) -> Findings:
                 f'steady {name}',
                 getattr(ours, name),
                 unit,
-                within_share(SHARE, of=getattr(theirs, name)),
+                within_share(MAX_DIFFERENCE, of=getattr(theirs, name)),
                 "Expected is MoorPy's.",
                 key=f'steady_{name}',
             )

@@ -1,4 +1,4 @@
-"""Changes of what is not measured at sea, and what they do to hauls that the model misses."""
+"""Changes of quantities not measured at sea, and their effect on hauls that the model misses."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,19 +14,21 @@ from trawl_ros.records.observables import Observables
 from trawl_ros.solver.equilibrium import steady_state
 
 STRUMMING = 2.35
-"""Normal drag coefficient of a tow cable that vibrates at sea, the middle of 2.2 to 2.5."""
+"""Normal drag coefficient of a vibrating tow cable at sea, the middle of 2.2 to 2.5."""
 
 NET_DRAG = 2.0
-"""Factor on the net's drag: Reid's and MacLennan's formulas give 1.4 to 2.1 times that of the krill
-nets as built, at 2 knots."""
+"""Factor on the net's drag.
 
-FASTER = 2.9 / 2.7
-"""Factor on speed: the upper end over the middle of what one haul printed."""
+Reid's and MacLennan's formulas give 1.4 to 2.1 times that of the krill nets as built, at 2 knots.
+"""
+
+SPEED_FACTOR = 2.9 / 2.7
+"""Factor on speed: upper end over middle of the range printed for one haul."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """Change of a gear, and factor on the speed at which it is towed."""
+    """Change of a gear, and factor on its towing speed."""
 
     what: str
     gear: Callable[[GearRecord], GearRecord] = lambda gear: gear
@@ -65,8 +67,8 @@ CHANGES = (
     Change('no shielding', _unshielded),
     Change(f'warps that strum, C_N {STRUMMING:g}', _strumming),
     Change(f'net drag × {NET_DRAG:g}', _net_drag),
-    Change(f'{100 * (FASTER - 1):.0f} % faster', speed=FASTER),
-    Change('the last three', lambda gear: _strumming(_net_drag(gear)), FASTER),
+    Change(f'{100 * (SPEED_FACTOR - 1):.0f} % faster', speed=SPEED_FACTOR),
+    Change('the last three', lambda gear: _strumming(_net_drag(gear)), SPEED_FACTOR),
     Change("no growth of twine's drag at low Reynolds numbers", _netting('viscous')),
     Change('no lift of sheets', _netting('lift')),
     Change('no floats', _no_floats),
@@ -76,8 +78,9 @@ CHANGES = (
 def changed_hauls(
     gear: GearRecord, haul: HaulRecord, changes: Sequence[Change] = CHANGES
 ) -> list[tuple[Observables | None, Mapping[str, float]]]:
-    """Observables and derived quantities of a haul with each change; none where that has no steady
-    state.
+    """Observables and derived quantities of a haul with each change of the gear.
+
+    A change without a steady state gives None and an empty mapping.
     """
     found: list[tuple[Observables | None, Mapping[str, float]]] = []
     for change in changes:
@@ -92,7 +95,7 @@ def changed_hauls(
 
 
 def value_of(observables: Observables | None, derived: Mapping[str, float], quantity: str) -> float:
-    """Quantity of this name; NaN where there are no observables."""
+    """Return the quantity of this name; NaN without observables."""
     if observables is None:
         return float('nan')
     if quantity in derived:

@@ -1,6 +1,6 @@
-"""Numbers behind missed points, each over a range: what a point would need of one of them alone.
+"""Uncertain numbers behind missed points, each over a range, and the value that a point would need.
 
-The ranges were written down before any of them was run.
+The ranges were fixed before any run.
 """
 
 from collections.abc import Callable, Sequence

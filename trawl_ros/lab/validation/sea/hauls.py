@@ -1,15 +1,15 @@
-"""Published hauls at sea beside the model, point by point."""
+"""Published hauls at sea compared with the model, point by point."""
 
 import math
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.sea.doubts import doubts_table
-from trawl_ros.lab.validation.sea.figure import haul_figure
 from trawl_ros.lab.validation.sea.modelled import ModelledHaul, is_right, modelled
 from trawl_ros.lab.validation.sea.published import (
     PointRecord,
@@ -30,6 +30,65 @@ from trawl_ros.lab.validation.sea.tables import (
     word,
 )
 from trawl_ros.report.pictures import Drawing
+
+MARKS = {
+    'door_depth': 'v',
+    'door_spread': 'o',
+    'net_depth': '^',
+    'vertical_opening': 's',
+    'horizontal_opening': 'D',
+    'warp_tension': 'P',
+    'net_drag': 'X',
+    'lower_bridle_tension': 'd',
+    'board_attack': '>',
+    'mouth_area': '*',
+}
+
+
+def haul_figure(
+    points: Sequence[tuple[str, str, float, float, str]], near_percent: float
+) -> Figure:
+    """Draw model over sea, both logarithmic; forces (kN) apart from m, m² and °.
+
+    Parameters
+    ----------
+    points
+        Gear, quantity, measured value, value of the model (NaN for none), and use of the haul.
+    near_percent
+        Half width of the band around equality, %.
+    """
+    forces = [p for p in points if p[1] in FORCES]
+    lengths = [p for p in points if p[1] not in FORCES]
+    groups = [('m, m², °', 1.0, lengths)] + ([('kN', 1e-3, forces)] if forces else [])
+    gears = list(dict.fromkeys(p[0] for p in points))
+    figure = Figure(figsize=(5.2 * len(groups), 4.8), layout='constrained')
+    for axes, (unit, scale, group) in zip(
+        np.atleast_1d(figure.subplots(1, len(groups))), groups, strict=True
+    ):
+        labels = set()
+        for gear, quantity, sea, model, use in group:
+            colour = f'C{gears.index(gear)}'
+            label = f'{gear}, {quantity.replace("_", " ")}'
+            axes.loglog(
+                scale * sea,
+                scale * model,
+                MARKS[quantity],
+                color=colour,
+                markerfacecolor=colour if use == 'counts' else 'none',
+                label=None if label in labels else label,
+            )
+            labels.add(label)
+        values = scale * np.array([p[2] for p in group] + [p[3] for p in group])
+        values = values[np.isfinite(values)]
+        ends = np.array([0.7 * values.min(), 1.4 * values.max()])
+        axes.plot(ends, ends, 'k-', linewidth=0.8)
+        near = near_percent / 100.0
+        axes.fill_between(ends, (1 - near) * ends, (1 + near) * ends, color='k', alpha=0.08)
+        axes.set(xlabel=f'sea / {unit}', ylabel=f'model / {unit}', xlim=ends, ylim=ends)
+        axes.grid(which='both', alpha=0.3)
+        axes.legend(fontsize='x-small')
+    return figure
+
 
 POINTS, GEARS = 20, 3
 """Numbers of points that count, and of gears they are of, that are asked for."""
@@ -183,7 +242,7 @@ def run(small: bool) -> Findings:
 def _beside_reference(
     points: Sequence[tuple[ModelledHaul, PointRecord]], reference: ReferenceRecord
 ) -> list[MeasuredValue]:
-    """Largest errors of depth and of drag of the points that count, against those of others."""
+    """Rows on the largest errors of depth and drag, compared with those of others."""
     groups = (
         ('depth', 'depth', DEPTHS, reference.depth_percent),
         ('drag', 'drag and tension', FORCES, reference.drag_percent),
@@ -207,7 +266,7 @@ def _beside_reference(
 
 
 def _reference(published: PublishedHauls) -> str:
-    """Say whose accuracy is compared with."""
+    """Return a sentence on the source of these errors of others."""
     reference = published.reference
     return (
         f'Limits on the errors of depth and drag, {reference.depth_percent:g} and '
@@ -217,7 +276,7 @@ def _reference(published: PublishedHauls) -> str:
 
 
 def _worst(points: Sequence[tuple[ModelledHaul, PointRecord]]) -> str:
-    """Say which points are off most."""
+    """Return a sentence on the points with the largest errors."""
     ordered = sorted(points, key=lambda pair: -abs(pair[0].error(pair[1])))[:4]
     return 'Most off: ' + ', '.join(
         f'{one.gear.gear} {one.haul.name} {word(p.quantity)} {percent(one.error(p))}'

@@ -42,7 +42,7 @@ def gear_record(gear: GearHauls, *, small: bool) -> GearRecord:
 
 
 def modelled(gear: GearHauls, *, small: bool) -> list[ModelledHaul]:
-    """Find the steady state of each haul: cold, and where that fails from the hauls before it."""
+    """Find the steady state of each haul: cold, or else from the hauls before it."""
     record = gear_record(gear, small=small)
     results: list[ModelledHaul] = []
     known: list[Equilibrium] = []
@@ -69,7 +69,7 @@ Modelled = Mapping[tuple[str, str], ModelledHaul]
 
 
 def is_right(trend: TrendRecord, hauls: Modelled) -> bool:
-    """True if the model changes as a sign or bound says; false without both steady states."""
+    """True if the model changes by the sign or bound; False without both steady states."""
     first, second = _ends(trend, hauls)
     if trend.within is not None:
         return bool(abs(second - first) <= trend.within)

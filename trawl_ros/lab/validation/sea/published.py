@@ -1,4 +1,4 @@
-"""Published hauls as records: sources, points and what may be tuned, from ``config/hauls``."""
+"""Published hauls as records: sources, points and tunable values, from ``config/hauls``."""
 
 from typing import Annotated, Literal
 
@@ -8,8 +8,48 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.resources import share_path
 from trawl_ros.core.schema import FrozenDict, Numbers, Record, load_yaml, validated
 from trawl_ros.gear.drag_bands import KNOT
+from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.validation.sea.thinner import ThinnerRecord, thinner
+
+
+class ThinnerRecord(Record):
+    """Share of the net's twine area that is removed from its small meshes, by thinner twine."""
+
+    mesh_up_to_mm: Annotated[float, Field(gt=0)]
+    area_off: Annotated[float, Field(gt=0, lt=1)]
+
+
+def thinner(plan: NetPlanRecord, change: ThinnerRecord) -> NetPlanRecord:
+    """Return the plan with thinner twine in all pieces with meshes up to a size.
+
+    Raises
+    ------
+    TrawlError
+        If these pieces have less twine than is to be taken off.
+    """
+    small = [piece for piece in plan.pieces if piece.mesh_mm <= change.mesh_up_to_mm]
+    share = sum(piece.twine_area for piece in small) / sum(
+        piece.twine_area for piece in plan.pieces
+    )
+    if share <= change.area_off:
+        raise TrawlError(
+            f'thinner.area_off: found {change.area_off:g}, expected less than {share:.3g}, the '
+            f'share of the twine area in meshes up to {change.mesh_up_to_mm:g} mm'
+        )
+    factor = 1.0 - change.area_off / share
+    pieces = tuple(_thinned(piece, factor) if piece in small else piece for piece in plan.pieces)
+    return plan.model_copy(update={'pieces': pieces})
+
+
+def _thinned(piece: PieceRecord, factor: float) -> PieceRecord:
+    """Return a piece with another twine diameter; its mass per length scales with the square."""
+    changed = {}
+    if piece.rtex is not None:
+        changed['rtex'] = factor**2 * piece.rtex
+    if piece.twine_diameter_mm is not None:
+        changed['twine_diameter_mm'] = factor * piece.twine_diameter_mm
+    return piece.model_copy(update=changed)
+
 
 FILE = ('config', 'hauls', 'published.yaml')
 
@@ -25,13 +65,14 @@ Quantity = Literal[
     'lower_bridle_tension',
     'board_attack',
 ]
-"""Measured quantity, by its name among the `Observables` or `DERIVED`; m, m² for the area of the
-mouth, N for the tension of one warp or bridle and the drag of the net, and degrees for the attack
-angle of the boards.
+"""Name of a measured quantity among the `Observables` or `DERIVED`.
+
+Units are m, m² for the area of the mouth, N for the tension of one warp or bridle and the drag of
+the net, and degrees for the attack angle of the boards.
 """
 
 Use = Literal['counts', 'tunes', 'told']
-"""Use of a haul: it counts, one number of the gear was set by it, or it is shown only."""
+"""Use of a haul: it counts, it set one number of the gear, or it is only shown."""
 
 
 class HaulSource(Record):
@@ -42,7 +83,7 @@ class HaulSource(Record):
 
 
 class PointRecord(Record):
-    """Point: a quantity that was measured in a haul, with the ends of its range where printed."""
+    """Point: a measured quantity of a haul, with its range if one is printed."""
 
     quantity: Quantity
     value: Annotated[float, Field(gt=0)]
@@ -52,8 +93,11 @@ class PointRecord(Record):
 
 
 class HaulRecord(Record):
-    """Haul: length of each warp, speed through the water, weights in water that were changed, and
-    twine that the net had less of than its plan says.
+    """Published haul.
+
+    ``warp_m`` is the length of each warp, and ``speed_kn`` the speed through the water.
+    ``hung_weight_in_water_n`` gives weights that were changed, ``thinner`` the twine that was
+    thinner than the net plan says.
     """
 
     name: str
@@ -111,7 +155,7 @@ class HaulRecord(Record):
 
 
 class GearHauls(Record):
-    """Hauls of one gear, what was tuned by them, and what had to be assumed."""
+    """Hauls of one gear, with the tuned and the assumed values."""
 
     gear: str
     source: str
@@ -181,7 +225,7 @@ class TrendRecord(Record):
 
 
 class ReferenceRecord(Record):
-    """Accuracy that others reached at sea: largest errors of depth and of drag, %."""
+    """Accuracy reached by others at sea: largest errors of depth and of drag, %."""
 
     depth_percent: Annotated[float, Field(gt=0)]
     drag_percent: Annotated[float, Field(gt=0)]
@@ -189,15 +233,17 @@ class ReferenceRecord(Record):
 
 
 class UnusedSource(Record):
-    """Source that was looked at and not used, and the reason."""
+    """Source that was examined and not used, with the reason."""
 
     source: str
     why: str
 
 
 class PublishedHauls(Record):
-    """All published hauls: sources by name, hauls by gear, trends, what was not used, and the
-    accuracy to compare with.
+    """All published hauls.
+
+    They have sources by name, hauls by gear, trends, sources not used, and the accuracy to compare
+    with.
     """
 
     sources: dict[str, HaulSource]

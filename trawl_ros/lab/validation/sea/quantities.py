@@ -1,4 +1,4 @@
-"""Quantities that sources print besides the observables: drag, area, tension, attack angle."""
+"""Quantities that sources print in addition to observables: drag, area, tension, attack angle."""
 
 import numpy as np
 
@@ -31,8 +31,10 @@ def quantities(model: GearModel, steady: SteadyState) -> dict[str, float]:
 
 
 def net_drag(pulls: FloatArray, tow: Tow) -> float:
-    """Drag (N) of all that is behind the boards: the pull of sweeps and bridles on them against the
-    course, from the ``pulls`` (2, 3, 3) at the boards' fastening points.
+    """Drag (N) of everything behind the boards.
+
+    It is the force of sweeps and bridles on the boards against the course, from ``pulls`` (2, 3, 3)
+    at the boards' fastening points.
     """
     behind = pulls[:, 1:].sum(axis=(0, 1))
     course: FloatArray = tow.block_velocities.mean(axis=0)

@@ -1,4 +1,4 @@
-"""Tables of published hauls beside the model."""
+"""Tables of published hauls compared with the model."""
 
 import math
 from collections.abc import Sequence
@@ -16,18 +16,18 @@ from trawl_ros.lab.validation.sea.published import GearHauls, PublishedHauls, Tr
 from trawl_ros.report.rendering import number
 
 NEAR_PERCENT = 30.0
-"""Error that most points are to stay within, %."""
+"""Error that most points should stay within, %."""
 
 FORCES = ('warp_tension', 'net_drag', 'lower_bridle_tension')
 """Quantities in newtons."""
 
 
 UNITS = {'warp_m': 'm of warp', 'speed_kn': 'knot'}
-"""Units of what slopes are by."""
+"""Units of the variables of slopes."""
 
 
 def word(quantity: str) -> str:
-    """Quantity in words."""
+    """Return the name of a quantity in words."""
     return quantity.replace('_', ' ')
 
 
@@ -48,7 +48,7 @@ def shown(value: float, quantity: str) -> str:
 
 
 def points_table(hauls: Sequence[ModelledHaul], published: PublishedHauls) -> TextTable:
-    """Every point beside the model."""
+    """Return a table of every point compared with the model."""
     uses = {'counts': 'counts', 'tunes': 'tuned by it', 'told': 'shown only'}
     rows = []
     for one in hauls:
@@ -74,7 +74,7 @@ def points_table(hauls: Sequence[ModelledHaul], published: PublishedHauls) -> Te
 
 
 def trends_table(trends: Sequence[TrendRecord], hauls: Modelled) -> TextTable:
-    """Signs and bounds of trends beside the model."""
+    """Return a table of signs and bounds of trends compared with the model."""
     rows = tuple(
         (
             trend.gear,
@@ -165,7 +165,7 @@ def changes_table(hauls: Sequence[ModelledHaul], *, small: bool) -> TextTable:
 
 
 def gears_table(gears: Sequence[GearHauls], published: PublishedHauls) -> TextTable:
-    """Sources of the gears, what was tuned and what assumed."""
+    """Return a table of the gears' sources, with tuned and assumed values."""
     return TextTable(
         'What was tuned and assumed.',
         ('gear', 'source', 'tuned', 'assumed'),

@@ -1,6 +1,6 @@
-"""Numbers that are assumed of the tank's net, each over its range, and what measured values need.
+"""Assumed numbers of the tank's net, each over its range, and the values that readings would need.
 
-The ranges were written down before any of them was run.
+The ranges were fixed before any run.
 """
 
 import math
@@ -19,18 +19,20 @@ SHOWN, SLOW = '64.0', '67.0'
 """Trials that are solved for each doubt: that by which twine was tuned, and the slowest of its
 series, whose tensions together give an exponent."""
 
-NEAR, POWER = 0.1, 0.1
+POINT_TOLERANCE_SHARE, EXPONENT_TOLERANCE = 0.1, 0.1
 """Share of a measured value within which a point is asked to be, and difference of exponents."""
 
 
 COARSE = 0.5
-"""Fineness of the net with which doubts are solved, as a share of that of the file."""
+"""Refinement of the net for doubts, as a share of that of the file."""
 
 
 @dataclass(frozen=True)
 class Doubt:
-    """Assumed number: its change by a factor, and the ends of the factors that are tried; or twine
-    that is not ``small`` as in the tank.
+    """Assumed value of the tank's model, with the factors to vary it by.
+
+    ``change`` scales the value by a factor, and ``low`` and ``high`` are the factors to try. If
+    ``small`` is False, the twine has its drag at sea instead of that in the tank.
     """
 
     what: str
@@ -122,7 +124,7 @@ DOUBTS = (
 
 @dataclass(frozen=True)
 class Doubted:
-    """Doubt with what the model has at both ends of it, by factor; none where nothing is found."""
+    """Doubt with the model's results at both ends, by factor; empty where nothing was found."""
 
     doubt: Doubt
     shown: dict[float, HeldNet | None]
@@ -168,7 +170,7 @@ def _values(net: HeldNet | None) -> tuple[str, str, str]:
 
 
 def doubts_table(every: Sequence[Doubted], states: Sequence[FlumeState]) -> TextTable:
-    """Every doubt with the values that it gives, and what the measured ones need."""
+    """Return a table of every doubt with its results, and the factors that the readings need."""
     by_trial = {state.trial: state for state in states}
     tank, slow = by_trial[SHOWN], by_trial[SLOW]
     power = math.log(tank.tension / slow.tension) / math.log(tank.speed / slow.speed)
@@ -185,8 +187,8 @@ def doubts_table(every: Sequence[Doubted], states: Sequence[FlumeState]) -> Text
             ('', '')
             if not one.doubt.small
             else (
-                need_in_words(heights, tank.height, NEAR),
-                need_in_words(powers, power, POWER / power),
+                need_in_words(heights, tank.height, POINT_TOLERANCE_SHARE),
+                need_in_words(powers, power, EXPONENT_TOLERANCE / power),
             )
         )
         if one is every[0]:
@@ -208,7 +210,7 @@ def doubts_table(every: Sequence[Doubted], states: Sequence[FlumeState]) -> Text
         'Assumed numbers, each changed alone, with a net cut half as finely: '
         f'trial {SHOWN}, and the exponent of tension from trial {SLOW} to it. The last columns '
         'have the factors on the number, of those tried, with which the height comes within '
-        f'{100 * NEAR:g} % of the tank and the exponent within 0.1.',
+        f'{100 * POINT_TOLERANCE_SHARE:g} % of the tank and the exponent within 0.1.',
         (
             'number', 'factor', 'spread (m)', 'height (m)', 'tension (kN)', 'exponent',
             'height needs', 'exponent needs',

@@ -16,7 +16,7 @@ from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, with
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.tank.doubts import doubted, doubts_table
-from trawl_ros.lab.validation.tank.held import SCALE, HeldNet, held, led_to
+from trawl_ros.lab.validation.tank.held import MODEL_SCALE, HeldNet, held, led_to
 from trawl_ros.lab.validation.tank.states import TRAWL, TUNED, FlumeState, read_states
 from trawl_ros.report.pictures import Drawing
 
@@ -25,7 +25,7 @@ GEAR = 'flume_83_112'
 TABLE = (
     Path(trawl_ros.__file__).parents[2] / 'shared/data/noaa_trawlmetrics/flume_tank_2025_2026.csv'
 )
-"""Table of the measured states, in a folder beside the checkout."""
+"""Table of the measured states, in a folder next to the checkout."""
 
 MEDIAN, EXPONENT = 10.0, 0.1
 """Largest median error (%) asked for, and largest difference of the exponent of tension."""
@@ -34,21 +34,21 @@ SERIES = ('67.0', '63.0', '65.0', '66.0')
 """Trials with standard bridles at 17.5 m of spread whose tensions give the exponent over speed."""
 
 QUANTITIES = {'spread': ('m', 1.0), 'height': ('m', 1.0), 'tension': ('kN', 1e-3)}
-"""Unit in a report, and its number in one of SI."""
+"""Display unit of each quantity, and its number in one SI unit."""
 
 NEIGHBOURS = 3
-"""States from which a net is led to one that is not found cold."""
+"""Number of known states to start from if a state is not found cold."""
 
-FRICTION = 0.5
-"""Friction of the tank's floor, as a share of what it carries, of which one row is made."""
+FLOOR_FRICTION = 0.5
+"""Friction of the tank's floor, as a share of the load on it, in one row."""
 
 BESIDES = {'lower_spread': 'between lower wing tips', 'wing_height': 'upper wing tips, height'}
-"""Columns of the table of which nothing counts, in m."""
+"""Columns of the table that do not count, in m."""
 
 
 @dataclass(frozen=True)
 class Compared:
-    """State with the net that the model has for it, or the reason why there is none."""
+    """State with the model's net for it, or the reason why there is none."""
 
     state: FlumeState
     net: HeldNet | None
@@ -71,7 +71,7 @@ class Compared:
 
 
 def compared(gear: GearRecord, states: Sequence[FlumeState]) -> list[Compared]:
-    """Find the net of each state: cold, and where that fails led from those most like it."""
+    """Find the net of each state: cold, or else from the most similar known states."""
     found = {}
     for number, state in enumerate(states):
         try:
@@ -86,7 +86,7 @@ def compared(gear: GearRecord, states: Sequence[FlumeState]) -> list[Compared]:
 
 
 def _led(gear: GearRecord, missing: Compared, known: Sequence[Compared]) -> Compared:
-    """State that was not found cold, led from one of the three most like it."""
+    """Find a state from one of the three most similar known states."""
     state, reasons = missing.state, [missing.refusal]
     alike = [
         one for one in known if (one.state.sweeps, one.state.short) == (state.sweeps, state.short)
@@ -168,12 +168,15 @@ def _series(every: Sequence[Compared]) -> list[Compared]:
 
 
 def further_table(every: Sequence[Compared]) -> TextTable:
-    """Figures that explain the checks, of which nothing is asked."""
+    """Return a table of values that explain the checks and have no target."""
     nets = [one.net for one in every if one.net is not None]
     shares = [one.net.lower_share for one in every if one.state.counts and one.net is not None]
     rubbed = exponent(
         [
-            (one.state.speed, one.modelled('tension') + FRICTION * (one.net.floor + one.net.laid))
+            (
+                one.state.speed,
+                one.modelled('tension') + FLOOR_FRICTION * (one.net.floor + one.net.laid),
+            )
             for one in _series(every)
             if one.net is not None
         ]
@@ -185,7 +188,7 @@ def further_table(every: Sequence[Compared]) -> TextTable:
         ('what', 'value', 'note'),
         (
             (
-                f'exponent with friction of the floor, {FRICTION:g} of what it carries',
+                f'exponent with friction of the floor, {FLOOR_FRICTION:g} of what it carries',
                 f'{rubbed:.3f}',
                 'Not in the model.',
             ),
@@ -215,8 +218,8 @@ METHOD = (
     'lower bridles, and so much of the footrope that its middle lies on it, without friction. What '
     'counts was chosen before anything was solved with the gear as it ships: states with standard '
     'bridles, normal legs and an empty codend. '
-    f'The tank has a net 1:{SCALE} in slow water, where thin twine has more drag, and the more the '
-    'slower it is (Choo and Casarella 1971). So has the model, but for knots and ropes.'
+    f'The tank has a net 1:{MODEL_SCALE} in slow water, where thin twine has more drag, and the '
+    'more the slower it is (Choo and Casarella 1971). So has the model, but for knots and ropes.'
 )
 
 

@@ -14,30 +14,40 @@ from trawl_ros.model.net.wake import VISCOSITY
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 
-STUB = 0.5
-"""Length (m) of the rope without weight and drag between a mast and what follows."""
+STUB_LENGTH_M = 0.5
+"""Length (m) of the rope without weight and drag between a mast and the net's ropes."""
 
-PRECISE = 0.002
+HEIGHT_TOLERANCE_M = 0.002
 """Height (m) over the floor at which the footrope lies on it."""
 
 FIRST_SHARE, STEP_SHARE, MOST = 0.2, 0.02, 30
 """Shares of the footrope's weight that the search tries first; and how often it tries."""
 
-SCALE = 8
-"""The tank's net was this many times smaller: readings are multiples of 0.08 m, a centimetre in the
-tank. Speeds went with the root of it, so Reynolds numbers with its power of 3/2."""
+MODEL_SCALE = 8
+"""Scale of the tank's net: readings are multiples of 0.08 m, a centimetre in the tank.
+
+Speeds scale with its square root, so Reynolds numbers with its power of 3/2.
+"""
 
 TANK_VISCOSITY = 1.05e-6
 """Kinematic viscosity of the tank's water, taken as at 20 °C, m²/s."""
 
-STEPS = 4
-"""Steps in which a net is led from one state to another."""
+LEADING_STEPS = 4
+"""Number of steps from one state to another."""
 
 
 @dataclass(frozen=True)
 class HeldNet:
-    """Net held by its pulling points: its model and equilibrium, and what the floor carries of the
-    footrope (N).
+    """Net held by its pulling points.
+
+    Attributes
+    ----------
+    model, found
+        Model and its equilibrium.
+    elevation
+        Height of the frame's origin above the floor, m.
+    floor
+        Weight of the footrope that the floor carries, N.
     """
 
     model: GearModel
@@ -63,8 +73,9 @@ class HeldNet:
 
     @property
     def laid(self) -> float:
-        """Weight in water (N) of the lower bridles, which the floor carries; they are made as the
-        upper ones.
+        """Weight in water (N) of the lower bridles, which the floor carries.
+
+        They are made as the upper ones.
         """
         return 2.0 * (BRIDLE + SHACKLE) * self.model.gear.bridle.weight_in_water_n_m
 
@@ -81,7 +92,7 @@ class HeldNet:
 
     @property
     def lower_share(self) -> float:
-        """Share of the lower bridles in the pull of all."""
+        """Share of the lower bridles in the tension of all bridles."""
         pulls = bar_tensions(self.model, self.found.state, self.found.tow)
         upper, lower = (
             float(np.mean(pulls[own]))
@@ -96,8 +107,8 @@ class HeldNet:
 
 
 def in_the_tank(model: GearModel) -> GearModel:
-    """Copy of a gear whose netting has the drag of the tank's small twine and slow water."""
-    factor = np.sqrt(TANK_VISCOSITY * SCALE**1.5 / VISCOSITY)
+    """Return a gear whose netting has the drag of the tank's small twine and slow water."""
+    factor = np.sqrt(TANK_VISCOSITY * MODEL_SCALE**1.5 / VISCOSITY)
     bars = model.bars
     return replace(
         model,
@@ -130,7 +141,7 @@ def held(
         If the net comes to rest nowhere on the way.
     """
     whole = gear.footrope.weight_in_water_n_m * (gear.footrope.length_m or 0.0)
-    length = SWEEP if state.sweeps else STUB
+    length = SWEEP if state.sweeps else STUB_LENGTH_M
     point = OperatingPoint(length, length, state.speed)
 
     def below(share: float, start: Equilibrium | None) -> tuple[float, GearModel, Equilibrium]:
@@ -144,7 +155,7 @@ def held(
     deep, model, found = below(share, None if near is None else near.found)
     slope = None
     for _ in range(MOST):
-        if abs(deep) <= PRECISE:
+        if abs(deep) <= HEIGHT_TOLERANCE_M:
             return HeldNet(model, found, state.elevation, (1.0 - share) * whole)
         step = STEP_SHARE if slope is None else -deep / slope
         step = max(-0.2, min(0.2, step))
@@ -158,7 +169,7 @@ def held(
 
 
 def led_to(gear: GearRecord, state: FlumeState, known: FlumeState, net: HeldNet) -> HeldNet:
-    """Lead the net of a known state to another one of the same rig, in equal steps.
+    """Move the net of a known state to another state of the same rig, in equal steps.
 
     Raises
     ------
@@ -166,8 +177,8 @@ def led_to(gear: GearRecord, state: FlumeState, known: FlumeState, net: HeldNet)
         If it comes to rest no more on the way: with the trial it was led from, and how far it came.
     """
     reached = 0
-    for step in range(1, STEPS + 1):
-        share = step / STEPS
+    for step in range(1, LEADING_STEPS + 1):
+        share = step / LEADING_STEPS
         between = replace(
             state,
             **{
@@ -179,14 +190,15 @@ def led_to(gear: GearRecord, state: FlumeState, known: FlumeState, net: HeldNet)
             net = held(gear, between, near=net)
         except NoSteadyState as reason:
             raise NoSteadyState(
-                f'led from trial {known.trial} the net came {reached} of {STEPS} steps: {reason}'
+                f'led from trial {known.trial} the net came {reached} of {LEADING_STEPS} steps: '
+                f'{reason}'
             ) from None
         reached = step
     return net
 
 
 def _rigged(gear: GearRecord, state: FlumeState, share: float) -> GearRecord:
-    """Gear as it stood for a state, with a share of the footrope's weight."""
+    """Return the gear as rigged for a state, with a share of the footrope's weight."""
     assert gear.pair is not None
     foot = gear.footrope.weight_in_water_n_m * share
     length = SWEEP if state.sweeps else TRUNCATED if state.short else BRIDLE

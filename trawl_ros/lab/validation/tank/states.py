@@ -10,10 +10,10 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.units import UNITS
 
 TRAWL = '83-112'
-"""The trawl whose states are taken, under this name in the table."""
+"""The trawl of the states, by its name in the table."""
 
 TUNED = ('64.0',)
-"""Trial at which one number of the gear file was set: it never counts."""
+"""Trial that set one number of the gear file; it never counts."""
 
 BRIDLE, SWEEP, SHACKLE = 54.9, 27.4, 0.61
 """Lengths (m): of bridles as printed (standard ones; others follow a sweep and are as long as
@@ -21,7 +21,7 @@ it), and what lengthens the lower ones: printed spreads of doors and lower wings
 leave 70.7 m (70.5 to 71.0) of rope on either side, for bridles, legs and 0.6 m."""
 
 TRUNCATED = 47.95
-"""Length (m) of standard bridles in rigs with short ones, of whose rope 63.8 m are left."""
+"""Length (m) of standard bridles in rigs with short ones, of which 63.8 m of rope remain."""
 
 LEG = 15.24
 """Legs of the doors and their extensions (m), 10 and 40 feet, which were not in the tank: the
