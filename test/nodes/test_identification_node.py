@@ -34,7 +34,7 @@ HAUL_LOG = ROOT.parent / 'shared/data/noaa_trawlmetrics/gear_testing_2026_haul_l
 HAUL_MAPPING = ROOT / 'config/logs/door_test_haul_log.yaml'
 
 SETTLE_S, WINDOW_S = 10.0, 20.0
-LENGTH_S = 46
+LENGTH_S = 49
 """One window's worth of steady towing, and as much more as late readings may take."""
 
 
@@ -192,8 +192,9 @@ def test_measurements_at_sea_without_speed_and_spread_are_not_enough(
         graph.until(lambda: listener.report() is not None and listener.report().level == ERROR)
         assert not listener.estimates
     for words in (
-        'nothing is estimated: no readings on vessel/velocity_water, ',
-        ', door/spread, ',
+        'no readings on ',
+        'vessel/velocity_water',
+        'door/spread',
         # Half hours apart, no stamp is borne out by others.
         'none usable of 104 of port_tension',
     ):
