@@ -13,7 +13,7 @@ MAX_DIFFERENCE = 0.01
 """Largest allowed difference, as a share."""
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Solve the same steady tow in both programs; ``small`` makes no difference."""
     _, ours = own_steady(WIRE, own_model(WIRE, SEGMENTS))
     theirs = MoorPyWire(WIRE).solve()

@@ -126,7 +126,7 @@ def held(
     state: FlumeState,
     near: HeldNet | None = None,
     *,
-    small: bool = True,
+    quick: bool = True,
 ) -> HeldNet:
     """Find the net of a state, with its footrope on the floor.
 
@@ -146,7 +146,7 @@ def held(
 
     def below(share: float, start: Equilibrium | None) -> tuple[float, GearModel, Equilibrium]:
         model = build_model(_rigged(gear, state, share))
-        model = in_the_tank(model) if small else model
+        model = in_the_tank(model) if quick else model
         found = find_equilibrium(model, point, start)
         seen = found.observables
         return seen.net_depth + seen.vertical_opening - state.elevation, model, found
