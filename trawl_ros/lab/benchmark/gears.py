@@ -5,7 +5,7 @@ from trawl_ros.gear.records import GearRecord
 
 
 def default_gear(*, quick: bool) -> GearRecord:
-    """Return the default gear, or a coarse version of it if ``small``."""
+    """Return the default gear, or a coarse version of it if ``quick``."""
     gear = load_gear('kaifuha')
     if not quick:
         return gear

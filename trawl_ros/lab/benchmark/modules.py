@@ -44,7 +44,7 @@ def check_names(names: tuple[str, ...]) -> None:
 
 
 def measure(name: str, *, quick: bool) -> Findings:
-    """Run one module; ``small`` is a version for the test suite, which takes seconds.
+    """Run one module; ``quick`` is a version for the test suite, which takes seconds.
 
     A module that fails becomes a missed row and does not end the report.
     """

@@ -14,7 +14,7 @@ MAX_DIFFERENCE = 0.01
 
 
 def run(quick: bool) -> Findings:
-    """Solve the same steady tow in both programs; ``small`` makes no difference."""
+    """Solve the same steady tow in both programs; ``quick`` makes no difference."""
     _, ours = own_steady(WIRE, own_model(WIRE, SEGMENTS))
     theirs = MoorPyWire(WIRE).solve()
     names = (('depth', 'm'), ('lag', 'm'), ('tension', 'N'))

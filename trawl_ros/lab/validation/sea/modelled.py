@@ -36,7 +36,7 @@ class ModelledHaul:
 
 
 def gear_record(gear: GearHauls, *, quick: bool) -> GearRecord:
-    """Gear of these hauls; with ``small``, its net cut coarsely."""
+    """Gear of these hauls; with ``quick``, its net cut coarsely."""
     record = load_gear(gear.gear)
     return record.refined(net=0.4) if quick else record
 
