@@ -132,8 +132,8 @@ def held(
 
     The floor carries sweeps and lower bridles, and of the footrope as much as lets its middle lie
     where the floor is: what is left on the net is sought, spread evenly. There is no friction.
-    Its twine is that of the tank where ``tank_twine`` is true, or as large as at sea. The search begins at ``near``, or
-    cold.
+    Its twine is that of the tank where ``tank_twine`` is true, else as large as at sea. The search
+    begins at ``near``, or cold.
 
     Raises
     ------
