@@ -51,7 +51,7 @@ help:
 	@echo 'make check      style, types, imports and the quick tests'
 	@echo 'make test       style, types and all tests but the long ones'
 	@echo 'make test-slow  the long tests: commands that take minutes among them'
-	@echo 'make study      one long run of the whole chain: NAME=coverage ARGS=--small'
+	@echo 'make study      one long run of the whole chain: NAME=coverage ARGS=--quick'
 	@echo 'make endurance  the long tests at full size, hours: TESTS=soak'
 	@echo 'make test-view  the tests of the viewer, which is installed before (170 MB)'
 	@echo 'make fuzz       give all readers hostile input for MINUTES: docs/studies/fuzz.json'

@@ -10,11 +10,11 @@ from trawl_ros.diagnosis.score_test import looks_at
 @pytest.fixture(scope='module')
 def case():
     """Whitened data of three effects beside two nuisances."""
-    chance = np.random.default_rng(0)
-    nuisance, effects = chance.normal(size=(60, 2)), chance.normal(size=(60, 5))
+    rng = np.random.default_rng(0)
+    nuisance, effects = rng.normal(size=(60, 2)), rng.normal(size=(60, 5))
     basis, _ = np.linalg.qr(nuisance)
     seen = effects - basis @ (basis.T @ effects)
-    return seen, chance
+    return seen, rng
 
 
 def gathered(seen, data):
@@ -26,8 +26,8 @@ BLOCKS = ([0], [1, 2], [3, 4])
 
 
 def test_it_is_what_least_squares_gains(case):
-    seen, chance = case
-    data = seen @ [0.0, 1.0, -0.5, 0.0, 0.0] + chance.normal(size=60)
+    seen, rng = case
+    data = seen @ [0.0, 1.0, -0.5, 0.0, 0.0] + rng.normal(size=60)
     found = gathered(seen, data)
     for block in BLOCKS:
         values, *_ = np.linalg.lstsq(seen[:, block], data, rcond=None)
@@ -39,8 +39,8 @@ def test_it_is_what_least_squares_gains(case):
 
 
 def test_with_some_values_free_the_others_explain_the_rest(case):
-    seen, chance = case
-    data = chance.normal(size=60)
+    seen, rng = case
+    data = rng.normal(size=60)
     found = gathered(seen, data)
     both = found.chi2([0, 1, 2])
     assert found.without([0]).chi2([1, 2]) == pytest.approx(both - found.chi2([0]))
@@ -48,8 +48,8 @@ def test_with_some_values_free_the_others_explain_the_rest(case):
 
 
 def test_another_draw_of_the_noise_is_read_with_the_same_information(case):
-    seen, chance = case
-    found = gathered(seen, chance.normal(size=60))
+    seen, rng = case
+    found = gathered(seen, rng.normal(size=60))
     assert found.degrees_of_freedom([1, 2]) == len([1, 2])
     assert found.chi2([1, 2]) > 0.0
     drawn = found.with_noise(np.random.default_rng(3))
@@ -60,11 +60,11 @@ def test_another_draw_of_the_noise_is_read_with_the_same_information(case):
 
 
 def test_a_threshold_is_exceeded_as_often_as_it_says(case):
-    seen, chance = case
+    seen, rng = case
     limit = threshold(gathered(seen, np.zeros(60)), BLOCKS, 0.05, seed=1)
     exceeded = 0
     for _ in range(2000):
-        found = gathered(seen, chance.normal(size=60))
+        found = gathered(seen, rng.normal(size=60))
         exceeded += max(found.strength(block) for block in BLOCKS) > limit
     assert 0.035 < exceeded / 2000 < 0.068
 
@@ -75,21 +75,21 @@ def test_a_block_is_looked_at_as_a_whole_and_value_by_value():
 
 
 def test_what_is_detectable_is_detected_four_times_of_five(case):
-    seen, chance = case
+    seen, rng = case
     quiet = gathered(seen, np.zeros(60))
     limit = threshold(quiet, BLOCKS, 0.01)
     (size,) = detectable(quiet, [0], limit)
     found = [
-        gathered(seen, size * seen[:, 0] + chance.normal(size=60)).strength([0]) > limit
+        gathered(seen, size * seen[:, 0] + rng.normal(size=60)).strength([0]) > limit
         for _ in range(1000)
     ]
     assert np.mean(found) == pytest.approx(0.8, abs=0.05)
 
 
 def test_twins_cover_each_other_and_strangers_do_not():
-    chance = np.random.default_rng(3)
-    one = chance.normal(size=50)
-    other = chance.normal(size=50)
+    rng = np.random.default_rng(3)
+    one = rng.normal(size=50)
+    other = rng.normal(size=50)
     other -= one * (one @ other) / (one @ one)
     seen = np.column_stack((one, -3.0 * one, other))
     found = gathered(seen, np.zeros(50))

@@ -50,10 +50,10 @@ def test_the_current_does_not_overshoot_between_levels(rich_water: Water) -> Non
 
 @pytest.mark.parametrize('number', [2, 3, 4, 9])
 def test_its_cubics_are_those_of_scipy(number: int) -> None:
-    chance = np.random.default_rng(number)
+    rng = np.random.default_rng(number)
     for flat in (1.0, 0.0):
-        depths = np.cumsum(chance.uniform(0.1, 80.0, number))
-        currents = chance.normal(size=(number, 2))
+        depths = np.cumsum(rng.uniform(0.1, 80.0, number))
+        currents = rng.normal(size=(number, 2))
         # Levels of one current, steep ends and turns are where its slopes are cut.
         currents[1:3] *= flat
         found = Water(depths=depths, currents=currents).profile[1][:-1]

@@ -11,8 +11,8 @@ from trawl_ros.sentences.links import (
     SILENT_NS,
     LinkClock,
     Source,
+    SourceArbiter,
     Tally,
-    Tellers,
 )
 
 
@@ -30,7 +30,7 @@ def test_reasons_without_end_are_counted_together():
 
 
 def test_of_two_that_tell_a_topic_the_first_is_believed_until_it_is_silent():
-    tellers = Tellers()
+    tellers = SourceArbiter()
 
     def rival(system, link, now):
         spoken = Spoken(system, 'x', '', {('door/spread', 'distance'): 80.0}, None)
@@ -48,7 +48,7 @@ def test_of_two_that_tell_a_topic_the_first_is_believed_until_it_is_silent():
 
 
 def test_of_a_ships_sentences_the_first_row_is_preferred_and_each_tells_what_no_other_does():
-    tellers = Tellers()
+    tellers = SourceArbiter()
     fix, velocity = ('vessel/fix', 'latitude'), ('vessel/velocity_ground', 'speed')
 
     def topics(name, rank, *readings):

@@ -11,7 +11,7 @@ from trawl_ros.model.assembly import forces, mass
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
 from trawl_ros.solver.equilibrium import SteadyState
-from trawl_ros.solver.likeness import same_forces, same_mass, same_observables
+from trawl_ros.solver.model_equality import same_forces, same_mass, same_observables
 
 AT = Situation((500.0, 500.0, 2.1), hours=1.0)
 

@@ -94,7 +94,7 @@ class Study(Generic[PlanT]):
         Name on the command line, of its files, and its heading.
     plan
         Frozen dataclass of options, each made by `option`.
-    small
+    quick
         Values of the plan with which the study takes minutes.
     run, method
         Make the result; say in sentences how it is made.
@@ -104,7 +104,7 @@ class Study(Generic[PlanT]):
     page: str
     title: str
     plan: type[PlanT]
-    small: Mapping[str, object]
+    quick: Mapping[str, object]
     run: Callable[[PlanT, Work], StudyResult]
     method: Callable[[PlanT], str]
 
@@ -197,7 +197,7 @@ def parser(study: Study[PlanT]) -> argparse.ArgumentParser:
         _add_option(found, own)
     found.add_argument('--out', type=Path, default=OUT / study.name, help='Folder of the report.')
     found.add_argument('--force', action='store_true', help='Begin again, whatever is there.')
-    found.add_argument('--small', action='store_true', help='Few trials, in minutes.')
+    found.add_argument('--quick', action='store_true', help='Few trials, in minutes.')
     found.add_argument('--scheduler', help='Address of a Dask cluster that shares the work.')
     found.add_argument('--workers', type=int, help='Processes of this machine.')
     found.add_argument('--shard', type=int, nargs=2, default=(1, 1), metavar=('PART', 'OF'),
@@ -227,7 +227,7 @@ def main(study: Study[PlanT], words: Sequence[str]) -> None:
         for name in study.plan.__dataclass_fields__  # type: ignore[attr-defined]
         if (value := getattr(given, name)) is not None
     }
-    plan = study.plan(**{**(study.small if given.small else {}), **own})
+    plan = study.plan(**{**(study.quick if given.quick else {}), **own})
     shard = (given.shard[0], given.shard[1])
     with stoppable(f'the trials made so far are kept in {given.out}') as (display, _):
         work = Work(given.out, display, given.scheduler, given.workers, shard, given.force)

@@ -55,7 +55,7 @@ STUDY = Study(
 
 
 def test_fields_of_a_plan_are_options_and_the_command_has_those_that_differ(tmp_path, capsys):
-    main(STUDY, ['--small', '--loud', '--out', str(tmp_path), '--workers', '1'])
+    main(STUDY, ['--quick', '--loud', '--out', str(tmp_path), '--workers', '1'])
     assert '2 of 3 targets are reached' in capsys.readouterr().out
     assert "make study NAME=toss ARGS='--tosses 2 --loud'" in (tmp_path / 'toss.md').read_text()
     assert len((tmp_path / 'trials.jsonl').read_text().splitlines()) == 3

@@ -139,7 +139,7 @@ def command(
         angles = wanted.attack, wanted.inclination
         model, changes = traded.model(model), ()
     low, high = speeds or (speed, speed)
-    wish = Wish(*angles, float(np.radians(pitch)), warps or (warp, warp), (low, high))
+    wish = WantedTrim(*angles, float(np.radians(pitch)), warps or (warp, warp), (low, high))
     points, usable, more, steady = _trimmed(model, changes, wish)
     if wanted is not None and steady is not None:
         reached = replace(wanted, observables=steady.observables)
@@ -162,7 +162,7 @@ def _refuse_ignored(context: click.Context, ranges: dict[str, tuple[float, float
 
 
 @dataclass(frozen=True)
-class Wish:
+class WantedTrim:
     """Wanted angles (rad), and shortest and longest warp (m), lowest and highest speed (m/s)."""
 
     attack: float
@@ -188,7 +188,7 @@ def _with_middle(ends: tuple[float, float]) -> list[float]:
 
 
 def _trimmed(
-    model: 'GearModel', changes: 'tuple[RigChange, ...]', wish: Wish
+    model: 'GearModel', changes: 'tuple[RigChange, ...]', wish: WantedTrim
 ) -> 'tuple[FloatArray, bool, Traded, SteadyState | None]':
     """Find points and print them.
 

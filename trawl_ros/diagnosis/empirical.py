@@ -70,10 +70,10 @@ def empirical(predictor: Predictor, base: Refit, test: ScoreTest) -> Empirical |
 
     terms = replace(test, wanted=wanted, columns=tuple(columns), evidence=gathered(columns))
     placebo = 0.0
-    chance = np.random.default_rng(0)
+    rng = np.random.default_rng(0)
     for _ in range(PLACEBOS):
         # As many of each: the same sign in all windows would be the term itself.
-        signs = chance.permutation(np.resize((1.0, -1.0), len(columns)))
+        signs = rng.permutation(np.resize((1.0, -1.0), len(columns)))
         fake = gathered([sign * own for sign, own in zip(signs, columns, strict=True)])
         placebo = max(placebo, *(fake.chi2([place]) for place in range(len(wanted))))
     ranked = sorted(wanted, key=terms.penalised, reverse=True)

@@ -105,9 +105,9 @@ class Evidence:
             self.root - taken @ self.root,
         )
 
-    def with_noise(self, chance: np.random.Generator) -> 'Evidence':
+    def with_noise(self, rng: np.random.Generator) -> 'Evidence':
         """Evidence of the same data with as much noise again, drawn by chance."""
-        drawn = chance.standard_normal(len(self.root)) @ self.root
+        drawn = rng.standard_normal(len(self.root)) @ self.root
         return replace(self, score=self.score + drawn)
 
     def _inverse(self, block: Sequence[int]) -> FloatArray:

@@ -186,12 +186,12 @@ def _resampled(
             test.of_windows([row for row, own in enumerate(states) if own != state])
             for state in dict.fromkeys(states)
         ]
-    chance = np.random.default_rng(0)
+    rng = np.random.default_rng(0)
     trials = [
         # Of few tows one may hold all the evidence there is: then it is noise that is drawn anew.
-        test.resampled(chance.integers(number, size=number).tolist())
+        test.resampled(rng.integers(number, size=number).tolist())
         if number >= FEWEST_TOWS
-        else test.evidence.with_noise(chance)
+        else test.evidence.with_noise(rng)
         for _ in range(DRAWS)
     ]
     gains = [

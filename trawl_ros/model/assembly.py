@@ -18,7 +18,7 @@ from trawl_ros.model import kite as kite_physics
 from trawl_ros.model import line
 from trawl_ros.model.bar import between
 from trawl_ros.model.bar_pass import add_bar_blocks, add_bar_forces, add_bar_masses, water_of
-from trawl_ros.model.compiled import alike, compiled
+from trawl_ros.model.compiled import compiled, promote_dtypes
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.line import BarMotion
 from trawl_ros.model.lump_pass import (
@@ -59,7 +59,7 @@ class Points:
 
 def points_of(model: GearModel, state: State, tow: Tow) -> Points:
     """Return positions and velocities of all points at which bars can end."""
-    fastening, outward, *moving = alike(
+    fastening, outward, *moving = promote_dtypes(
         model.board.fastening_by_side,
         OUTWARD,
         state.nodes,
@@ -80,7 +80,7 @@ def points_of(model: GearModel, state: State, tow: Tow) -> Points:
 def motion_of(model: GearModel, points: Points, tow: Tow) -> BarMotion:
     """Return the motion of all bars."""
     ends = model.ends
-    x, v = alike(points.positions, points.velocities)
+    x, v = promote_dtypes(points.positions, points.velocities)
     vector, stretching, velocity = np.empty((3, len(ends), 3), x.dtype)
     height = np.empty(len(ends), x.dtype)
     _motion(ends, x, v, vector, stretching, velocity, height)
@@ -109,7 +109,7 @@ def sheets_of(model: GearModel) -> tuple[IntArray, FloatArray, FloatArray, Float
 
 def lump_forces(model: GearModel, state: State) -> FloatArray:
     """Return drag (eq. 22), weight and buoyancy (eq. 28) of the lumps at nodes, (n, 3) N."""
-    x, v, *lumps = alike(
+    x, v, *lumps = promote_dtypes(
         state.nodes,
         state.node_velocities,
         model.lump_mass,
@@ -152,7 +152,9 @@ def kite_load(model: GearModel, state: State) -> FloatArray:
 def forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
     """Return generalised forces (dof,) on nodes (N) and boards (N, N m), in fixed axes."""
     points = points_of(model, state, tow)
-    x, v, rest, rate = alike(points.positions, points.velocities, *rest_lengths(model, tow))
+    x, v, rest, rate = promote_dtypes(
+        points.positions, points.velocities, *rest_lengths(model, tow)
+    )
     total = np.zeros_like(x)
     add_bar_forces(model.ends, x, v, rest, rate, model.bars.columns, water_of(model.water), total)
     add_sheet_forces(x, v, *sheets_of(model), water_of(model.water), total)
@@ -166,7 +168,7 @@ def gathered(
 ) -> FloatArray:
     """Return generalised forces (dof,) from the loads of points, boards and kite."""
     held = model.layout.kite
-    given = alike(total, arms, boards, kite, held.shares)
+    given = promote_dtypes(total, arms, boards, kite, held.shares)
     force = np.empty(model.dof, given[0].dtype)
     gather_loads(*given, held.nodes, force)
     return force
@@ -182,7 +184,7 @@ def block_forces(model: GearModel, state: State, tow: Tow) -> FloatArray:
     block, upper = model.ends[top].T
     block = block - model.nodes - 6
     rest, rate = (values[top] for values in rest_lengths(model, tow))
-    x, v, rest, rate = alike(
+    x, v, rest, rate = promote_dtypes(
         np.concatenate([tow.blocks[block], state.nodes[upper]]),
         np.concatenate([tow.block_velocities[block], state.node_velocities[upper]]),
         rest,
@@ -328,7 +330,7 @@ def _kite_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray
 def _lump_blocks(model: GearModel, state: State) -> tuple[FloatArray, FloatArray]:
     stiffness, damping = np.empty((2, model.nodes, 3, 3))
     fill_lump_slopes(
-        *alike(
+        *promote_dtypes(
             state.nodes,
             state.node_velocities,
             model.lump_volume,

@@ -8,7 +8,7 @@ real, or complex for a complex step in functions without derivatives.
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.model.compiled import compiled, inner
+from trawl_ros.model.compiled import compiled, njit_device
 
 SLACK_WIDTH = 1e-4
 """Half the range of strain over which the kink of eq. 20, from slack to taut, is rounded."""
@@ -26,7 +26,7 @@ SPEED_ROUNDING_M_S = 1e-6
 """Speed below which quadratic drag is rounded off, so that its derivative exists."""
 
 
-@inner
+@njit_device
 def between(
     x: FloatArray,
     v: FloatArray,
@@ -45,7 +45,7 @@ def between(
     return height
 
 
-@inner
+@njit_device
 def bowed_at(strain: float, bow: float) -> tuple[float, float, float]:
     """Return the elastic strain of a bar that sags under a load across it, with two derivatives.
 
@@ -67,7 +67,7 @@ def bowed_at(strain: float, bow: float) -> tuple[float, float, float]:
     return e + slope * imaginary, slope + curve * imaginary, curve
 
 
-@inner
+@njit_device
 def taut_at(strain: float, bow: float) -> tuple[float, float, float]:
     """Return the elastic strain of a bar and its first two derivatives.
 
@@ -83,7 +83,7 @@ def taut_at(strain: float, bow: float) -> tuple[float, float, float]:
     return 0 * strain, 0 * strain, 0.0
 
 
-@inner
+@njit_device
 def tension_at(
     stiffness: float,
     damping_time: float,
@@ -109,7 +109,7 @@ def tension_at(
     return stiffness * value, slope
 
 
-@inner
+@njit_device
 def spanned_at(vector: FloatArray, rest: float) -> float:
     """Return the distance of a bar's ends over its straight length, at most 1.
 
@@ -123,7 +123,7 @@ def spanned_at(vector: FloatArray, rest: float) -> float:
     return 1.0 + 0 * span
 
 
-@inner
+@njit_device
 def drag_at(
     normal_area: float,
     sliding_area: float,
@@ -163,7 +163,7 @@ def weight_at(mass: float, volume: float, rest: float, density: float, gravity: 
     return -gravity * (mass - density * volume) * rest
 
 
-@inner
+@njit_device
 def pull_slopes_at(
     stiffness: float,
     damping_time: float,
@@ -198,7 +198,7 @@ def pull_slopes_at(
             by_stretching[i, j] = viscous * along[i] * along[j]
 
 
-@inner
+@njit_device
 def load_slopes_at(
     normal_area: float,
     sliding_area: float,

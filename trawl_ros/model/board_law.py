@@ -11,7 +11,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.bar_pass import WaterTable
-from trawl_ros.model.compiled import compiled, inner
+from trawl_ros.model.compiled import compiled, njit_device
 from trawl_ros.model.current import current_at
 
 LAW_RANGE = (0.0, radians(40.0))
@@ -33,7 +33,7 @@ ANGLE_ROUNDING_RAD = radians(4.0)
 """Width over which an angle becomes constant outside its range."""
 
 
-@inner
+@njit_device
 def angle_at(y: float, x: float) -> float:
     """Return ``arctan2`` with the derivative along a complex step."""
     square = x.real**2 + y.real**2
@@ -42,8 +42,8 @@ def angle_at(y: float, x: float) -> float:
     return atan2(y.real, x.real) + slope * inverse
 
 
-@inner
-def settled(value: float, low: float, high: float) -> float:
+@njit_device
+def smooth_clip(value: float, low: float, high: float) -> float:
     """Saturate the angle smoothly: unchanged inside [low, high], constant well outside."""
     if value.real > high:
         if value.real - high < ANGLE_ROUNDING_RAD:
@@ -56,8 +56,8 @@ def settled(value: float, low: float, high: float) -> float:
     return value
 
 
-@inner
-def fading(attack: float, low: float, high: float) -> float:
+@njit_device
+def smoothstep_window(attack: float, low: float, high: float) -> float:
     """Return the fade factor of a law: 1 inside [low, high], smoothly 0 at `LAW_FADED_RAD`."""
     share = 0 * attack
     if attack.real > high:
@@ -69,7 +69,7 @@ def fading(attack: float, low: float, high: float) -> float:
     return 1.0 - share**2 * (3.0 - 2.0 * share)
 
 
-@inner
+@njit_device
 def _folded(attack: float) -> float:
     """Return the attack angle for drag, which is the same for flow on either face."""
     if attack.real >= 0.0:
@@ -79,7 +79,7 @@ def _folded(attack: float) -> float:
     return -attack - ANGLE_ROUNDING_RAD
 
 
-@inner
+@njit_device
 def _across(flow: FloatArray) -> float:
     """Return the fade factor of α, which vanishes where the flow runs along the span."""
     plane = flow[0] ** 2 + flow[1] ** 2
@@ -95,10 +95,10 @@ def fill_coefficients(
     a1, c1, a2, c2, b3, c3 = values[0], values[1], values[2], values[3], values[4], values[5]
     a4, c4, b5, c5, a6, c6 = values[6], values[7], values[8], values[9], values[10], values[11]
     for n in range(len(attack)):
-        fade = fading(attack[n], LAW_RANGE[0], LAW_RANGE[1])
-        alpha = settled(attack[n], LAW_RANGE[0], LAW_RANGE[1])
-        beta = settled(slip[n], -SLIP_LIMIT_RAD, SLIP_LIMIT_RAD)
-        resistance = a1 * settled(_folded(attack[n]), LAW_RANGE[0], LAW_RANGE[1]) + c1
+        fade = smoothstep_window(attack[n], LAW_RANGE[0], LAW_RANGE[1])
+        alpha = smooth_clip(attack[n], LAW_RANGE[0], LAW_RANGE[1])
+        beta = smooth_clip(slip[n], -SLIP_LIMIT_RAD, SLIP_LIMIT_RAD)
+        resistance = a1 * smooth_clip(_folded(attack[n]), LAW_RANGE[0], LAW_RANGE[1]) + c1
         # A negative drag would push the board forward.
         coefficients[n, 0] = resistance if resistance.real > 0.0 else 0 * resistance
         coefficients[n, 1] = (a2 * alpha + c2) * fade

@@ -17,8 +17,8 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.polars import Polar, Tilt
-from trawl_ros.model.board_law import SLIP_LIMIT_RAD, fading, settled
-from trawl_ros.model.compiled import alike, compiled, inner
+from trawl_ros.model.board_law import SLIP_LIMIT_RAD, smooth_clip, smoothstep_window
+from trawl_ros.model.compiled import compiled, njit_device, promote_dtypes
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,9 @@ class TableLaw:
         """
         given = attack, slip, lean, rise
         shape = np.broadcast_shapes(*map(np.shape, given))
-        values, *angles = alike(values, *(np.broadcast_to(part, shape).ravel() for part in given))
+        values, *angles = promote_dtypes(
+            values, *(np.broadcast_to(part, shape).ravel() for part in given)
+        )
         coefficients = np.empty((*angles[0].shape, 6), values.dtype)
         _fill(self.polar.attack, self.cubics, *self.tilts, values, *angles, coefficients)
         return coefficients.reshape(*shape, 6)
@@ -88,7 +90,7 @@ def _cubics(knots: FloatArray, values: FloatArray) -> FloatArray:
     return np.concatenate([np.moveaxis(pieces, 0, -1), last])
 
 
-@inner
+@njit_device
 def _piece(knots: FloatArray, cubics: FloatArray, which: int, alpha: float) -> float:
     """Return a column of the table at an angle; it is constant below the first point."""
     place = 0
@@ -100,7 +102,7 @@ def _piece(knots: FloatArray, cubics: FloatArray, which: int, alpha: float) -> f
     return value
 
 
-@inner
+@njit_device
 def _turned(
     knots: FloatArray, cubics: FloatArray, sine: float, force: float
 ) -> tuple[float, float]:
@@ -126,12 +128,12 @@ def _fill(
 ) -> None:
     low, high = knots[0], knots[-1]
     for n in range(len(attack)):
-        alpha = settled(attack[n], low, high)
-        beta = settled(slip[n], -SLIP_LIMIT_RAD, SLIP_LIMIT_RAD)
-        fade = fading(attack[n], low, high)
+        alpha = smooth_clip(attack[n], low, high)
+        beta = smooth_clip(slip[n], -SLIP_LIMIT_RAD, SLIP_LIMIT_RAD)
+        fade = smoothstep_window(attack[n], low, high)
         lift = _piece(knots, cubics, 0, alpha) + values[2] * alpha + values[3]
         # Drag is the same for flow on either face.
-        folded = alpha if attack[n].real >= 0.0 else settled(-attack[n], low, high)
+        folded = alpha if attack[n].real >= 0.0 else smooth_clip(-attack[n], low, high)
         drag = _piece(knots, cubics, 1, folded) + values[0] * folded + values[1]
         ahead = _piece(knots, cubics, 2, alpha)
         lift *= _piece(heel, heeled, 0, lean[n]) * _piece(trim, trimmed, 0, rise[n])

@@ -40,7 +40,7 @@ def compiled(function: Callable[Given, Result]) -> Compiled[Result]:
     return _compiled(function)
 
 
-def inner(function: Callable[Given, Result]) -> Compiled[Result]:
+def njit_device(function: Callable[Given, Result]) -> Compiled[Result]:
     """Compile a function that is called by compiled ones only.
 
     It gets no wrapper for Python, which would take a fifth of its compilation.
@@ -56,7 +56,7 @@ def inlined(function: Callable[Given, Result]) -> Compiled[Result]:
     return _compiled(function, inline='always')
 
 
-def fused(function: Callable[Given, Result]) -> Compiled[Result]:
+def njit_fastmath(function: Callable[Given, Result]) -> Compiled[Result]:
     """Compile sums of products, whose operations may be fused and reordered."""
     return _compiled(function, fastmath={'contract', 'reassoc', 'nsz'})
 
@@ -109,7 +109,7 @@ for _kind in ('numba:compile', 'numba:run_pass'):
     event.register(_kind, _Steps())
 
 
-def alike(*arrays: FloatArray) -> list[FloatArray]:
+def promote_dtypes(*arrays: FloatArray) -> list[FloatArray]:
     """Return arrays of one kind, all real or all complex, for compiled loops."""
     return as_kind(complex if stepped_among(*arrays) else float, *arrays)
 

@@ -3,10 +3,10 @@
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.model.compiled import compiled, inner
+from trawl_ros.model.compiled import compiled, njit_device
 
 
-@inner
+@njit_device
 def current_at(
     knots: FloatArray, cubics: FloatArray, z: float, flow: FloatArray, slope: FloatArray
 ) -> None:
@@ -63,7 +63,7 @@ def fill_cubics(depths: FloatArray, currents: FloatArray, cubics: FloatArray) ->
             cubics[k, axis, 3] = currents[k, axis]
 
 
-@inner
+@njit_device
 def _end_slope(wide: float, next_wide: float, steep: float, next_steep: float) -> float:
     """Return the slope at an end: that of the parabola through three points, if monotone."""
     slope = ((2.0 * wide + next_wide) * steep - wide * next_steep) / (wide + next_wide)

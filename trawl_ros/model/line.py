@@ -11,7 +11,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.bar import drag_at, spanned_at, taut_at, tension_at
-from trawl_ros.model.compiled import alike, compiled
+from trawl_ros.model.compiled import compiled, promote_dtypes
 from trawl_ros.model.water import Water
 
 
@@ -52,7 +52,7 @@ class BarProperties:
     friction_viscous: FloatArray
 
     def __post_init__(self) -> None:
-        for name, values in zip(vars(self), alike(*self.columns), strict=True):
+        for name, values in zip(vars(self), promote_dtypes(*self.columns), strict=True):
             object.__setattr__(self, name, values)
 
     @property
@@ -91,7 +91,7 @@ class BarMotion:
 
 def taut(strain: FloatArray, bow: float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the results of `taut_at` for an array of strains."""
-    (flat,) = alike(np.ravel(strain))
+    (flat,) = promote_dtypes(np.ravel(strain))
     value, slope, curve = np.empty_like(flat), np.empty_like(flat), np.empty(flat.shape)
     _taut(flat, bow, value, slope, curve)
     shape = np.shape(strain)
@@ -112,7 +112,7 @@ def tension(bars: BarProperties, motion: BarMotion) -> tuple[FloatArray, FloatAr
     The damping of eq. 21 acts on the strain rate, so that paying out causes no damping force. A
     rope is slack if strain and damping together are negative, so that it never pushes.
     """
-    given = alike(
+    given = promote_dtypes(
         bars.stiffness,
         bars.damping_time,
         bars.bow,
@@ -153,7 +153,7 @@ def _tension(
 
 def drag(bars: BarProperties, motion: BarMotion, along: FloatArray, water: Water) -> FloatArray:
     """Return the hydrodynamic force (n, 3) in N on whole bars (eq. 23, 24)."""
-    given = alike(
+    given = promote_dtypes(
         bars.normal_drag * bars.normal_area,
         bars.friction * bars.wet_area,
         bars.normal_viscous,

@@ -16,14 +16,14 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.bar import SPEED_ROUNDING_M_S
 from trawl_ros.model.bar_pass import WaterTable
-from trawl_ros.model.compiled import compiled, inner
+from trawl_ros.model.compiled import compiled, njit_device
 from trawl_ros.model.current import current_at
 
 MIN_SHEET_AREA_M2 = 1e-4
 """Area below which that of a sheet is rounded off, so that its direction has a derivative."""
 
 
-@inner
+@njit_device
 def flow_past(
     x: FloatArray, v: FloatArray, n: int, water: WaterTable, flow: FloatArray, shear: FloatArray
 ) -> float:
@@ -92,7 +92,7 @@ def fill_lump_slopes(
         stiffness[n, 2, 2] += gravity * gradient * volume[n]
 
 
-@inner
+@njit_device
 def area_at(
     x: FloatArray,
     around: IntArray,

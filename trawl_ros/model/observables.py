@@ -8,7 +8,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.model.bar_pass import WaterTable, add_bar_forces, water_of
 from trawl_ros.model.board_law import angle_at, fill_flow
-from trawl_ros.model.compiled import as_kind, compiled, inner, stepped_among
+from trawl_ros.model.compiled import as_kind, compiled, njit_device, stepped_among
 from trawl_ros.model.current import current_at
 from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.state import State, Tow
@@ -74,7 +74,7 @@ def observed_nodes(model: GearModel) -> IntArray:
     return np.array([*mouth, *model.ends[model.layout.top_warp_bars, 1]])
 
 
-@inner
+@njit_device
 def _length(vector: FloatArray) -> float:
     """Return the length of a vector (3,), without conjugation."""
     size: float = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)

@@ -7,7 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
-from trawl_ros.model.compiled import compiled, fused
+from trawl_ros.model.compiled import compiled, njit_fastmath
 
 CACHED_PATTERNS = 4
 """Number of patterns kept; gears that differ only in the properties of bars share one."""
@@ -91,7 +91,7 @@ class SparsityPattern:
             first += len(values)
 
 
-@fused
+@njit_fastmath
 def _multiply(
     indices: IntArray,
     indptr: IntArray,

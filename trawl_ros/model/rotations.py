@@ -3,12 +3,12 @@
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.model.compiled import alike, compiled
+from trawl_ros.model.compiled import compiled, promote_dtypes
 
 
 def rotation(vector: FloatArray) -> FloatArray:
     """Return the rotation matrix of a rotation vector (Rodrigues), (..., 3) -> (..., 3, 3)."""
-    (flat,) = alike(vector.reshape(-1, 3))
+    (flat,) = promote_dtypes(vector.reshape(-1, 3))
     matrices = np.empty((len(flat), 3, 3), flat.dtype)
     _fill_rotations(flat, matrices)
     return matrices.reshape(*vector.shape, 3)
@@ -55,7 +55,7 @@ def rotation_vector(matrices: FloatArray) -> FloatArray:
 
     It is the inverse of `rotation` for angles of less than π.
     """
-    (flat,) = alike(matrices.reshape(-1, 3, 3))
+    (flat,) = promote_dtypes(matrices.reshape(-1, 3, 3))
     vectors = np.empty((len(flat), 3))
     _fill_vectors(flat, vectors)
     return vectors.reshape(matrices.shape[:-1])

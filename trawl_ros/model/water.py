@@ -97,10 +97,10 @@ class Water:
 
     def _currents_at(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         # Imported here, as in `profile`.
-        from trawl_ros.model.compiled import alike
+        from trawl_ros.model.compiled import promote_dtypes
         from trawl_ros.model.current import fill_currents
 
-        (flat,) = alike(np.ravel(z))
+        (flat,) = promote_dtypes(np.ravel(z))
         flow, slope = np.empty((len(flat), 3), flat.dtype), np.empty((len(flat), 3))
         fill_currents(*self.profile, flat, flow, slope)
         return flow.reshape(*np.shape(z), 3), slope.reshape(*np.shape(z), 3)

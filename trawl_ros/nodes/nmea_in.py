@@ -32,7 +32,7 @@ from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.sentences.assembly import SampleAssembly
 from trawl_ros.sentences.codec import SentenceReader, Spoken
 from trawl_ros.sentences.framing import Foreign, Frame, Unreadable, parse_line
-from trawl_ros.sentences.links import LinkClock, Source, Tally, Tellers
+from trawl_ros.sentences.links import LinkClock, Source, SourceArbiter, Tally
 from trawl_ros.sentences.table import COMMANDS, load_tables
 
 DRAIN_S = 0.05
@@ -90,7 +90,7 @@ class NmeaIn(TrawlNode):
         self._reader = SentenceReader(tables)
         self._ranks = {key: rank for rank, key in enumerate(self._reader.rows)}
         self._assembly = SampleAssembly(tables, water)
-        self._tellers = Tellers()
+        self._tellers = SourceArbiter()
         self._tally = Tally()
         self._guard = SetPointGuard(
             SetPointLimits(

@@ -95,7 +95,7 @@ class Source:
         return same and self.is_instrument_of(other)
 
 
-class Tellers:
+class SourceArbiter:
     """Choice of one source for each topic: the first one is used while it reports.
 
     Among the sentences of one system on one link the order of the table decides.

@@ -18,8 +18,8 @@ from trawl_ros.model.observables import observe
 from trawl_ros.model.slopes.observed import observed_slopes
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
-from trawl_ros.solver.likeness import same_forces, same_observables
 from trawl_ros.solver.linear.factor import solve_refined
+from trawl_ros.solver.model_equality import same_forces, same_observables
 from trawl_ros.solver.rest_linearisation import rest_linearisation
 
 STD_FRACTION_OF_DIFFERENCES = 1e-4

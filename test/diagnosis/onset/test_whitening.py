@@ -99,7 +99,7 @@ def innovations(known, by_log=0.0, noise=1.0, log=0.0, stretches=200):
     """Innovations (n, k) where means scatter by so many of their `NOISE`, and the log by ``log``
     (m/s) more than its readings show.
     """
-    chance = np.random.default_rng(7)
+    rng = np.random.default_rng(7)
     filtered = WhiteningFilter(known, responses(by_log), 1.0)
     towed = TowedStretch(
         VALUES, np.zeros((K, 12)), np.zeros((K, len(INPUT_ERRORS))), np.zeros((K, P)),
@@ -108,7 +108,7 @@ def innovations(known, by_log=0.0, noise=1.0, log=0.0, stretches=200):
     found = []
     for number in range(stretches):
         last = LastStretch(number, number, number + 1, log_std=0.005, leaps=(STEADY, STEADY))
-        means = VALUES + noise * NOISE * chance.standard_normal(K) + log * by_log * chance.normal()
+        means = VALUES + noise * NOISE * rng.standard_normal(K) + log * by_log * rng.normal()
         white = filtered.step(means, NOISE, towed, np.zeros(12), last, np.zeros((K, 6)))
         found.append(white.whitened(white.residual))
     return np.array(found[10:])

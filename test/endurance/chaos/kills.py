@@ -53,7 +53,7 @@ def run_kills(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[
     NodeFailed
         If a node ends by itself, or does not begin.
     """
-    chance = np.random.default_rng(plan.seed)
+    rng = np.random.default_rng(plan.seed)
     logs = folder / 'log' / 'kills'
     recorded_s = 0.0
     with (
@@ -77,7 +77,7 @@ def run_kills(plan: Plan, folder: Path, on_progress: OnProgress, stop: Callable[
             if stop():
                 break
             began = time.monotonic()
-            time.sleep(chance.uniform(*RECORDS_S))
+            time.sleep(rng.uniform(*RECORDS_S))
             recorded_s += time.monotonic() - began
             crew.kill(RECORDER)
             done()

@@ -84,18 +84,18 @@ class InjectedFault:
 
 def faults_of(plan: Plan) -> list[InjectedFault]:
     """Return the faults on a tow, in order."""
-    chance = np.random.default_rng(plan.seed)
+    rng = np.random.default_rng(plan.seed)
     number = max(1, round(plan.hours * len(REPERTOIRE)))
     order: list[int] = []
     while len(order) < number:
-        order += chance.permutation(len(REPERTOIRE)).tolist()
+        order += rng.permutation(len(REPERTOIRE)).tolist()
     ends = plan.end_s * QUIET_SHARE, plan.end_s * (1.0 - QUIET_SHARE)
-    times = np.sort(chance.uniform(*ends, number)).tolist()
+    times = np.sort(rng.uniform(*ends, number)).tolist()
     faults = []
     for at_s, index in zip(times, order, strict=False):
         kind, target = REPERTOIRE[index]
         span = STOPPED_S if kind == 'stopped' else RUN_S
-        faults.append(InjectedFault(at_s, kind, target, float(chance.uniform(*span))))
+        faults.append(InjectedFault(at_s, kind, target, float(rng.uniform(*span))))
     return faults
 
 

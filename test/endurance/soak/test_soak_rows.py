@@ -17,7 +17,7 @@ NUMBER = 200
 
 def glances(memory=lambda share: 100.0, delay=lambda share: 0.5, cpu=0.1, pace=36.0):
     """Glances of a tow on which all nodes do alike, but for one's memory and another's delay."""
-    chance = np.random.default_rng(7)
+    rng = np.random.default_rng(7)
     for share in np.linspace(0.0, 1.0, NUMBER):
         data_s = 3600.0 * HOURS * share
         yield Glance(
@@ -25,12 +25,12 @@ def glances(memory=lambda share: 100.0, delay=lambda share: 0.5, cpu=0.1, pace=3
             wall_s=data_s / pace,
             memory_mb={
                 **dict.fromkeys(CHAIN, 200.0),
-                'winch_node': memory(share) + chance.normal(0.0, 0.2),
+                'winch_node': memory(share) + rng.normal(0.0, 0.2),
             },
             cpu_s=dict.fromkeys(CHAIN, cpu * data_s / pace),
             delay_s={
                 **dict.fromkeys(CONSUMERS, 0.5),
-                'vessel_node': delay(share) + chance.exponential(0.3),
+                'vessel_node': delay(share) + rng.exponential(0.3),
             },
         )
 

@@ -224,7 +224,7 @@ def test_stretches_in_which_derivatives_explode_are_left_out_and_told(coarse, mo
     assert any('unstable' in part.why for part in there.left_out)
 
 
-def rows(chance, number=60, noise=0.5, model=1.0):
+def rows(rng, number=60, noise=0.5, model=1.0):
     return GroupRows(
         stretches=np.repeat(np.arange(number), 2),
         channels=np.tile([0, 1], number),
@@ -238,7 +238,7 @@ def rows(chance, number=60, noise=0.5, model=1.0):
 
 
 def test_tows_that_are_joined_are_one_least_squares_problem():
-    chance, sizes, times = (
+    rng, sizes, times = (
         np.random.default_rng(5),
         np.array([1.0, 0.3, 2.0, 0.5, 0.7]),
         ErrorTimes(),
@@ -246,8 +246,8 @@ def test_tows_that_are_joined_are_one_least_squares_problem():
     shared, own = 3, 4
     groups = []
     for _ in range(2):
-        columns = chance.standard_normal((120, shared + own))
-        groups.append(LinearGroup(rows(chance), columns, chance.standard_normal(120)))
+        columns = rng.standard_normal((120, shared + own))
+        groups.append(LinearGroup(rows(rng), columns, rng.standard_normal(120)))
     precision = np.array([1.0] * shared + [4.0] * own)
     tows = [group.information(sizes, times) for group in groups]
     found = joined(tows, [precision, precision], shared)
@@ -275,17 +275,17 @@ def test_tows_that_are_joined_are_one_least_squares_problem():
 
 @pytest.mark.parametrize(('true', 'told'), [(3.0, 3.0), (0.2, 1.0)])
 def test_sizes_of_errors_are_found_those_of_slow_ones_not_below_what_is_stated(true, told):
-    chance, truth, times = (
+    rng, truth, times = (
         np.random.default_rng(8),
         np.array([1.6, 0.1, true, 0.3, 0.05]),
         ErrorTimes(),
     )
-    own = rows(chance, 200)
+    own = rows(rng, 200)
     root = np.linalg.cholesky(own.covariance(truth, times))
-    columns = chance.standard_normal((400, 14))
+    columns = rng.standard_normal((400, 14))
     nothing = GroupRows(*(np.zeros(0, dtype=int),) * 2, *np.zeros((6, 0)))
     empty = LinearGroup(nothing, np.zeros((0, 14)), np.zeros(0))
-    one = LinearGroup(own, columns, root @ chance.standard_normal(400))
+    one = LinearGroup(own, columns, root @ rng.standard_normal(400))
     groups = (one, *(empty,) * (len(GROUPS) - 1))
     data = LinearData((groups,), (slice(14, 14),), 14, times)
     found = estimated_sizes(data, ErrorSizes(), ErrorSizes())

@@ -32,8 +32,8 @@ AT_REST = StretchOptions(settling_s=0.0)
 
 
 def test_false_echoes_are_set_aside_at_the_beginning_too():
-    chance, times = np.random.default_rng(4), np.arange(0.0, 300.0, 3.0)
-    values = 90.0 + 0.05 * times + 0.4 * chance.standard_normal(100)
+    rng, times = np.random.default_rng(4), np.arange(0.0, 300.0, 3.0)
+    values = 90.0 + 0.05 * times + 0.4 * rng.standard_normal(100)
     values[[0, 1, 40, 99]] += 210.5
     values[60] += 4.0
     series = series_of(CHANNELS['door_spread'], times, values, 0.4)
@@ -43,24 +43,24 @@ def test_false_echoes_are_set_aside_at_the_beginning_too():
 
 
 def test_the_start_of_a_haul_is_no_outlier():
-    chance, times = np.random.default_rng(5), np.arange(0.0, 60.0, 0.5)
+    rng, times = np.random.default_rng(5), np.arange(0.0, 60.0, 0.5)
     values = 9e4 + 3e4 * np.clip((times - 30.0) / 4.0, 0.0, 1.0)
-    values += 1600.0 * chance.standard_normal(len(times))
+    values += 1600.0 * rng.standard_normal(len(times))
     assert series_of(CHANNELS['port_tension'], times, values, 500.0).excluded == 0
 
 
 @pytest.mark.parametrize('period', [6.0, 8.0, 9.3, 10.0, 12.0])
 def test_peaks_of_a_swell_that_are_read_once_a_second_are_no_outliers(period):
-    chance, times = np.random.default_rng(6), np.arange(0.0, 660.0)
+    rng, times = np.random.default_rng(6), np.arange(0.0, 660.0)
     values = 1.6e5 + 1.1e4 * np.sin(2.0 * np.pi * times / period)
-    values += 300.0 * chance.standard_normal(len(times))
+    values += 300.0 * rng.standard_normal(len(times))
     assert series_of(CHANNELS['port_tension'], times, values, 500.0).excluded == 0
 
 
 def test_outliers_are_set_aside_where_they_are_many():
-    chance, times = np.random.default_rng(6), np.arange(0.0, 660.0)
-    values = 1.6e5 + 1600.0 * chance.standard_normal(len(times))
-    wrong = np.flatnonzero(chance.random(len(times)) < 0.15)
+    rng, times = np.random.default_rng(6), np.arange(0.0, 660.0)
+    values = 1.6e5 + 1600.0 * rng.standard_normal(len(times))
+    wrong = np.flatnonzero(rng.random(len(times)) < 0.15)
     values[wrong] += 4e4
     series = series_of(CHANNELS['port_tension'], times, values, 500.0)
     assert series.excluded >= 0.95 * len(wrong)
@@ -81,7 +81,7 @@ def test_a_counter_that_leaps_while_its_winch_stands_moves_no_warp():
 
 
 def test_counters_tell_how_warps_run_where_no_winch_tells():
-    chance, times, grid = (
+    rng, times, grid = (
         np.random.default_rng(6),
         np.arange(0.0, 600.0, 0.5),
         np.arange(0.0, 590.0),
@@ -91,7 +91,7 @@ def test_counters_tell_how_warps_run_where_no_winch_tells():
     )
     true = 500.0 + np.cumsum(speed) * 0.5
     leaps = np.where(times < 200.0, 0.5, np.where(times < 420.0, -0.5, 0.4))
-    read = np.round(true + leaps + 0.05 * chance.standard_normal(len(times)), 1)
+    read = np.round(true + leaps + 0.05 * rng.standard_normal(len(times)), 1)
     payout = payout_by_counter(Series(times, read))
     lengths, rates = warp_path(Series(times, read), payout, grid)
     standing = (grid < 190.0) | (grid > 345.0)

@@ -13,11 +13,11 @@ NOTHING = Series(np.zeros(0), np.zeros(0))
 
 def read(swing, *, every=0.5, haul=0.0):
     """Half an hour of both warps; port swings by a part of the mean (std) with a period of 10 s."""
-    chance, times = np.random.default_rng(7), np.arange(0.0, 1800.0, every)
+    rng, times = np.random.default_rng(7), np.arange(0.0, 1800.0, every)
     wave = np.sqrt(2.0) * swing * np.sin(2.0 * np.pi * times / 10.0)
     ramp = haul * np.clip((times - 600.0) / 5.0, 0.0, 1.0)
-    own = MEAN * (1.0 + wave + ramp) + NOISE * chance.standard_normal(len(times))
-    other = MEAN + NOISE * chance.standard_normal(len(times))
+    own = MEAN * (1.0 + wave + ramp) + NOISE * rng.standard_normal(len(times))
+    other = MEAN + NOISE * rng.standard_normal(len(times))
     series = {
         name: series_of(CHANNELS[name], times, values, NOISE)
         for name, values in (('port_tension', own), ('starboard_tension', other))

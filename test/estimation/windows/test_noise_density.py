@@ -16,28 +16,28 @@ WHITE, SLOW, TIME_S = 0.03, 0.02, 15.0
 """Std (m/s) of a log's errors, and the correlation time of the second, as of bags/sea_trial."""
 
 
-def log_readings(chance, seconds):
+def log_readings(rng, seconds):
     slow, kept = np.empty(seconds), math.exp(-1.0 / TIME_S)
-    slow[0] = SLOW * chance.standard_normal()
-    for place, drawn in enumerate(chance.standard_normal(seconds - 1), start=1):
+    slow[0] = SLOW * rng.standard_normal()
+    for place, drawn in enumerate(rng.standard_normal(seconds - 1), start=1):
         slow[place] = kept * slow[place - 1] + SLOW * math.sqrt(1.0 - kept**2) * drawn
-    return 2.2 + slow + WHITE * chance.standard_normal(seconds)
+    return 2.2 + slow + WHITE * rng.standard_normal(seconds)
 
 
 def test_windows_show_errors_that_neighbours_do_not():
-    chance = np.random.default_rng(5)
+    rng = np.random.default_rng(5)
     windows = [
         SimpleNamespace(
             start_ns=0, end_ns=60 * SECOND,
-            noise={'speed': error_of_mean(log_readings(chance, 60), WHITE)},
+            noise={'speed': error_of_mean(log_readings(rng, 60), WHITE)},
         )
         for _ in range(200)
     ]  # fmt: skip
-    means = [log_readings(chance, 30).mean() for _ in range(2000)]
+    means = [log_readings(rng, 30).mean() for _ in range(2000)]
     told = noise_densities(windows)['speed'] / math.sqrt(30.0)
     # A minute is too short to show all of errors of 15 s.
     assert told == pytest.approx(np.std(means), rel=0.25)
-    series = series_of(CHANNELS['speed'], np.arange(600.0), log_readings(chance, 600), WHITE)
+    series = series_of(CHANNELS['speed'], np.arange(600.0), log_readings(rng, 600), WHITE)
     assert series.noise / math.sqrt(30.0) < 0.5 * np.std(means)
 
 

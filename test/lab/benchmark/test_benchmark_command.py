@@ -24,7 +24,7 @@ def run(*arguments):
     [pytest.param(name, marks=pytest.mark.slow if name == 'commands' else ()) for name in NAMES],
 )
 def test_every_module_runs_in_its_small_version(name, tmp_path):
-    result = run('--small', '--out', tmp_path, name)
+    result = run('--quick', '--out', tmp_path, name)
     assert result.exit_code == 0, result.output
     rows = json.loads((tmp_path / 'benchmark.json').read_text())['rows']
     assert rows
@@ -45,7 +45,7 @@ def test_every_module_runs_in_its_small_version(name, tmp_path):
 @pytest.mark.parametrize('name', ['start', 'recording'])
 def test_without_ros_figures_of_nodes_are_missed_and_it_is_said_why(name, tmp_path, monkeypatch):
     monkeypatch.setattr(modules, 'find_spec', lambda _: None)
-    result = run('--small', '--out', tmp_path, name)
+    result = run('--quick', '--out', tmp_path, name)
     assert result.exit_code == 0, result.output
     (row,) = json.loads((tmp_path / 'benchmark.json').read_text())['rows']
     assert (row['value'], row['ok']) == (None, False)
@@ -73,7 +73,7 @@ class _Module:
     def __init__(self, error):
         self.error = error
 
-    def measure(self, small) -> Findings:
+    def measure(self, quick) -> Findings:
         raise self.error
 
 

@@ -21,7 +21,7 @@ from trawl_ros.solver.sensitivity import PARAMETERS, sensitivities
 
 @pytest.fixture(scope='module')
 def coarse():
-    gear = default_gear(small=True)
+    gear = default_gear(quick=True)
     model = build_model(gear)
     return SimpleNamespace(gear=gear, model=model, prior=board_prior(gear))
 

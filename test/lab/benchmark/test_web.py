@@ -13,7 +13,7 @@ from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 
 @pytest.fixture(scope='module')
 def model() -> GearModel:
-    return build_model(default_gear(small=True))
+    return build_model(default_gear(quick=True))
 
 
 @pytest.fixture(scope='module')
@@ -54,7 +54,7 @@ def test_the_web_stays_in_the_steady_state_of_the_gear(
 
 def test_the_row_is_the_factor_of_the_best_scheme() -> None:
     pytest.importorskip('moordyn')
-    rows = measure(small=True).rows
-    assert rows[0].value == max(row.value for row in rows) == moordyn_web_factor(small=True)
+    rows = measure(quick=True).rows
+    assert rows[0].value == max(row.value for row in rows) == moordyn_web_factor(quick=True)
     assert rows[0].value > 1.0
     assert 'largest stable step' in rows[1].note

@@ -15,7 +15,7 @@ DOCS = Path(__file__).parents[3] / 'docs' / 'validation'
 def test_a_few_cases_make_a_report(tmp_path: Path) -> None:
     out = tmp_path / 'report'
     done = CliRunner().invoke(
-        trawl, ['validate', 'board_law', 'towed_wire', '--small', '--out', str(out)]
+        trawl, ['validate', 'board_law', 'towed_wire', '--quick', '--out', str(out)]
     )
     assert done.exit_code == 0, done.output
     figures = json.loads((out / 'validation.json').read_text())

@@ -7,7 +7,7 @@ from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.model.assembly import forces, mass
-from trawl_ros.solver.likeness import same_observables
+from trawl_ros.solver.model_equality import same_observables
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.partials import GearAtPoint, StepEnd, effect_pushes

@@ -60,12 +60,12 @@ SHORT_S = 540.0
 """Duration of the tow of the small version."""
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Run each command in a separate process."""
     with tempfile.TemporaryDirectory() as name, bytecode_kept(*LOADED):
         folder = Path(name)
-        rows = [_identified(folder, small=small)]
-        if not small:
+        rows = [_identified(folder, quick=quick)]
+        if not quick:
             rows.append(_diagnosed(folder))
     return Findings(
         tuple(rows),
@@ -75,7 +75,7 @@ def measure(small: bool) -> Findings:
     )
 
 
-def _identified(folder: Path, *, small: bool) -> MeasuredValue:
+def _identified(folder: Path, *, quick: bool) -> MeasuredValue:
     asked = MeasuredValue(
         'replay of a trial through trawl identify --steady, with hold-out, figures and page',
         math.nan,
@@ -83,7 +83,7 @@ def _identified(folder: Path, *, small: bool) -> MeasuredValue:
         at_least(OVER_REAL_TIME),
     )
     bag, gear, towed_s = share_path('bags', 'sea_trial'), 'kaifuha', None
-    if small:
+    if quick:
         scenario = _short(folder)
         towed_s = tow(scenario, folder / 'short').duration_s
         bag, gear = folder / 'short', str(folder / 'coarse.yaml')

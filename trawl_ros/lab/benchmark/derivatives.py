@@ -61,10 +61,10 @@ class RecordedInputs:
         )
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Tow with and without derivatives, alternately, several times."""
-    steps, repeats = (10, 2) if small else (300, 5)
-    model = build_model(default_gear(small=small))
+    steps, repeats = (10, 2) if quick else (300, 5)
+    model = build_model(default_gear(quick=quick))
     inputs = RecordedInputs(haul_of(model, steps * STEP_S))
     times = np.empty((2, repeats, steps))
     for repeat in range(repeats):

@@ -48,16 +48,16 @@ def _point(length: float, speed: float) -> OperatingPoint:
     return OperatingPoint(length, length, speed)
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Time steady states from a known one, from a cold start, and with the check of stability."""
-    model = build_model(default_gear(small=small))
-    repeats = 1 if small else 5
+    model = build_model(default_gear(quick=quick))
+    repeats = 1 if quick else 5
     known = find_equilibrium(model, _point(500.0, 2.1))
     warm = [_warm_s(model, known, change, repeats) for change in CHANGES]
     derived = [_warm_s(model, known, change, repeats, sensitivities) for change in CHANGES]
-    points = COLD_POINTS[2:3] if small else COLD_POINTS
-    cold = [median_s(_cold(model, *point), 1 if small else 3) for point in points]
-    usable = [median_s(_usable(model, *point), 1 if small else 3) for point in points]
+    points = COLD_POINTS[2:3] if quick else COLD_POINTS
+    cold = [median_s(_cold(model, *point), 1 if quick else 3) for point in points]
+    usable = [median_s(_usable(model, *point), 1 if quick else 3) for point in points]
     near = median_s(lambda: steady_state(model, 520.0, 2.1, start=known), repeats)
     kernels = _kernels(model, known)
     counts = [find_equilibrium(model, _point(500.0 + dl, 2.1 + du), known).iterations
@@ -105,8 +105,8 @@ def measure(small: bool) -> Findings:
             'the same, warm, with the check of stability', 1e3 * near, 'ms', note='+20 m of warp'
         ),
     ]
-    rows += _beside_trawlkit(median(warm), median(cold), small=small)
-    rows += _beside_moorpy(median(warm), small=small)
+    rows += _beside_trawlkit(median(warm), median(cold), quick=quick)
+    rows += _beside_moorpy(median(warm), quick=quick)
     return Findings(
         tuple(rows),
         text='A warm start begins at a known steady state nearby, whose factorisation is at hand '
@@ -173,10 +173,10 @@ def _usable(model: GearModel, length: float, speed: float) -> Callable[[], Stead
     return lambda: steady_state(model, length, speed)
 
 
-def _beside_trawlkit(warm_s: float, cold_s: float, *, small: bool) -> list[MeasuredValue]:
+def _beside_trawlkit(warm_s: float, cold_s: float, *, quick: bool) -> list[MeasuredValue]:
     what = "trawlkit's time for one speed, over the warm steady state"
     try:
-        times = trawlkit_s(small=small)
+        times = trawlkit_s(quick=quick)
     except PeerAbsent as absent:
         return [MeasuredValue(what, math.nan, '×', at_least(OVER_TRAWLKIT), str(absent))]
     peer = median(times)
@@ -190,15 +190,15 @@ def _beside_trawlkit(warm_s: float, cold_s: float, *, small: bool) -> list[Measu
     ]
 
 
-def trawlkit_s(*, small: bool) -> list[float]:
+def trawlkit_s(*, quick: bool) -> list[float]:
     """CPU time (s) of each speed in trawlkit's own example; all but the first start warm."""
     trawlkit, sim = peer('trawlkit'), peer('trawlkit.sim')
     case = trawlkit.run(peer('trawlkit.sim.validation').standard_case())
     start, times = None, []
-    for knots in (3.0,) if small else (2.0, 2.5, 3.0, 3.5, 4.0):
+    for knots in (3.0,) if quick else (2.0, 2.5, 3.0, 3.5, 4.0):
         solve = partial(
             sim.simulate, case, knots, scenario=sim.Scenario(), x_init=start,
-            resolution=TRAWLKIT_COARSE if small else sim.DEFAULT_RESOLUTION,
+            resolution=TRAWLKIT_COARSE if quick else sim.DEFAULT_RESOLUTION,
         )  # fmt: skip
         found, seconds = timed(solve)
         start = found.nodes
@@ -206,10 +206,10 @@ def trawlkit_s(*, small: bool) -> list[float]:
     return times
 
 
-def _beside_moorpy(warm_s: float, *, small: bool) -> list[MeasuredValue]:
+def _beside_moorpy(warm_s: float, *, quick: bool) -> list[MeasuredValue]:
     what = "MoorPy's time for one wire alone, warm, over the warm steady state of the gear"
     try:
-        seconds = moorpy_s(1 if small else 5)
+        seconds = moorpy_s(1 if quick else 5)
     except (PeerAbsent, PeerFailed) as error:
         return [MeasuredValue(what, math.nan, '×', note=str(error))]
     note = f'MoorPy {1e3 * seconds:.0f} ms, 20 m more or less of a towed wire of 600 m'

@@ -110,20 +110,20 @@ class Fitted:
     reason: str
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Fit by sensitivities, by differences, and by coordinate search."""
     gear = (
-        default_gear(small=True) if small else with_around(default_gear(small=False), MESHES_AROUND)
+        default_gear(quick=True) if quick else with_around(default_gear(quick=False), MESHES_AROUND)
     )
     model, prior = build_model(gear), board_prior(gear)
-    lengths, speeds = (LENGTHS[2:3], SPEEDS[1:2]) if small else (LENGTHS, SPEEDS)
+    lengths, speeds = (LENGTHS[2:3], SPEEDS[1:2]) if quick else (LENGTHS, SPEEDS)
     windows = trial(plant_of(gear), lengths, speeds)
-    options = QUICK if small else OPTIONS
+    options = QUICK if quick else OPTIONS
     ours = _fitted(Counting(model), windows, prior, options)
     of_ours = shares(lambda: _fitted(Counting(model), windows, prior, options), PARTS)
     theirs = _fitted(FiniteDifferencePredictor(model, prior.std), windows, prior, options)
     search = CoordinateSearch(model, windows, prior)
-    budget = round((0.02 if small else 1.0) * SEARCH_BUDGET_FACTOR * OVER_SEARCH * ours.solves)
+    budget = round((0.02 if quick else 1.0) * SEARCH_BUDGET_FACTOR * OVER_SEARCH * ours.solves)
     searched, seconds = timed(lambda: search.search(ours.objective, budget))
     found = (
         f'reached eq. 35 at {searched.objective:.4f} after {searched.solves} steady states'

@@ -51,13 +51,13 @@ class Run:
         return math.inf if self.error is None else self.error.of_range
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Run the manoeuvre with one step size after another."""
-    model = build_model(default_gear(small=small))
-    haul = haul_of(model, 20.0 if small else 300.0)
-    finest = 0.25 if small else CONVERGED_S
+    model = build_model(default_gear(quick=quick))
+    haul = haul_of(model, 20.0 if quick else 300.0)
+    finest = 0.25 if quick else CONVERGED_S
     ride, seconds = timed(lambda: haul.run(finest, finest))
-    runs = [_run(haul, step, ride) for step in ((0.5, 1.0, 2.0) if small else STEPS_S)]
+    runs = [_run(haul, step, ride) for step in ((0.5, 1.0, 2.0) if quick else STEPS_S)]
     within = [k for k, run in enumerate(runs) if run.of_range < MAX_ERROR_SHARE]
     best = max(within, key=lambda k: runs[k].factor) if within else None
     rows = []
@@ -67,18 +67,18 @@ def measure(small: bool) -> Findings:
         note = f'no step of those tried keeps all observables within {limit}'
     else:
         step = runs[best].step_s
-        factor = haul.duration_s / median_s(lambda: haul.run(step), 1 if small else 3)
+        factor = haul.duration_s / median_s(lambda: haul.run(step), 1 if quick else 3)
         note = _words(runs[best], haul)
     what = 'full gear with boards in 6-DOF, hauling, at the fastest step with an error below 1 %'
     rows.append(MeasuredValue(what, factor, '× real time', at_least(REAL_TIME), note))
-    rows.append(_beside_moordyn(factor, model, small=small))
+    rows.append(_beside_moordyn(factor, model, quick=quick))
     if best is not None:
         rows.append(MeasuredValue('that step', runs[best].step_s, 's'))
         worst = runs[best].error
         assert worst is not None
         note = f'of the range of {worst.worst}; {worst.of_value:.2%} of its value at most'
         rows.append(MeasuredValue('its error', 100 * worst.of_range, '%', note=note))
-    rows.append(_simulation(model, 4.0 if small else 60.0))
+    rows.append(_simulation(model, 4.0 if quick else 60.0))
     return Findings(
         tuple(rows),
         (Drawing('steps', 'Error and speed of the manoeuvre against the time step.', _draw(runs)),),
@@ -114,10 +114,10 @@ def _words(run: Run, haul: HaulManoeuvre) -> str:
     )
 
 
-def _beside_moordyn(factor: float, model: GearModel, *, small: bool) -> MeasuredValue:
+def _beside_moordyn(factor: float, model: GearModel, *, quick: bool) -> MeasuredValue:
     what = "the same beside MoorDyn's factor on a web of as many lines and points"
     try:
-        theirs = moordyn_web_factor(small)
+        theirs = moordyn_web_factor(quick)
     except (PeerAbsent, PeerFailed) as error:
         return MeasuredValue(what, math.nan, '×', at_least(OVER_MOORDYN), str(error))
     note = f'MoorDyn: {theirs:.1f} × real time, its doors prescribed'

@@ -4,10 +4,10 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 
 
-def default_gear(*, small: bool) -> GearRecord:
-    """Return the default gear, or a coarse version of it if ``small``."""
+def default_gear(*, quick: bool) -> GearRecord:
+    """Return the default gear, or a coarse version of it if ``quick``."""
     gear = load_gear('kaifuha')
-    if not small:
+    if not quick:
         return gear
     warp = gear.warp.model_copy(update={'segments': 6})
     return with_around(gear.model_copy(update={'warp': warp}), 12)

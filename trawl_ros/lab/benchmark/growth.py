@@ -60,14 +60,14 @@ class GrowthSize:
     peak_mb: float
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Measure one refinement after another."""
-    gear = default_gear(small=False)
+    gear = default_gear(quick=False)
     sizes, refused = [], 'no finer one was tried'
-    for around in MESHES_AROUND[:2] if small else MESHES_AROUND:
+    for around in MESHES_AROUND[:2] if quick else MESHES_AROUND:
         model = build_model(with_around(gear, around))
         try:
-            sizes.append(_size(model, small=small))
+            sizes.append(_size(model, quick=quick))
         except (NoSteadyState, StepFailed) as error:
             refused = f'{len(model.layout.net)} net nodes: {error}'
     last = sizes[-1]
@@ -132,8 +132,8 @@ def exponent(nodes: Sequence[int], values: Sequence[float]) -> float:
     return float(np.polyfit(np.log(nodes), np.log(values), 1)[0])
 
 
-def _size(model: GearModel, *, small: bool) -> GrowthSize:
-    steps, repeats = (4, 1) if small else (40, 3)
+def _size(model: GearModel, *, quick: bool) -> GrowthSize:
+    steps, repeats = (4, 1) if quick else (40, 3)
     known = find_equilibrium(model, START)
     haul = haul_of(model, steps * STEP_S, known)
     longer = START.port_length + 20.0

@@ -43,14 +43,14 @@ def check_names(names: tuple[str, ...]) -> None:
             raise TrawlError(f'{name}: no such benchmark; expected one of {", ".join(NAMES)}')
 
 
-def measure(name: str, *, small: bool) -> Findings:
-    """Run one module; ``small`` is a version for the test suite, which takes seconds.
+def measure(name: str, *, quick: bool) -> Findings:
+    """Run one module; ``quick`` is a version for the test suite, which takes seconds.
 
     A module that fails becomes a missed row and does not end the report.
     """
     module = import_module(f'trawl_ros.lab.benchmark.{name}')
     try:
-        found = module.measure(small)
+        found = module.measure(quick)
     except TrawlError as error:
         return Findings(
             (MeasuredValue(f'{name}: runs to its end', 0.0, target=at_least(1.0), note=str(error)),)

@@ -160,7 +160,7 @@ def run_motion_trial(
     """
     record = gear.model.gear
     prior = narrowed(board_prior(record), std_factor)
-    chance, tow = np.random.default_rng(seed), course_tow(duration_s)
+    rng, tow = np.random.default_rng(seed), course_tow(duration_s)
     if errors:
         readings = np.arange(0.0, duration_s)
         knots = knots_of_log(readings, LOG_STD, duration_s, STRETCH_S, MEMORY_S)
@@ -172,9 +172,9 @@ def run_motion_trial(
         )
     layout = layout_of(tow, gear, options.model)
     for _ in range(MOST_DRAWS):
-        drawn = draw_board(record, PLACES, chance, BoardDraw(std_factor=std_factor))
+        drawn = draw_board(record, PLACES, rng, BoardDraw(std_factor=std_factor))
         rigged = replace(gear, model=gear.model.with_board(points=drawn.model.board.points))
-        z = chance.standard_normal(len(layout))
+        z = rng.standard_normal(len(layout))
         z[len(prior)] = abs(z[len(prior)])
         if not errors:
             z[len(prior) :] = 0.0
@@ -187,7 +187,7 @@ def run_motion_trial(
         means = towed.values + columns(towed, layout, prior.std) @ (z * linear_part(layout))
         for number, rows in enumerate(group_rows(replace(tow, means=means), means, tow.noise)):
             covariance = rows.covariance(options.sizes.of_group(number), options.times)
-            noise = np.linalg.cholesky(covariance) @ chance.standard_normal(len(covariance))
+            noise = np.linalg.cholesky(covariance) @ rng.standard_normal(len(covariance))
             means[rows.stretches, rows.channels] += noise
         fit = fit_motion(rigged, [replace(tow, means=means)], prior, options)
         return MotionTrial(point.coefficients, prior, fit)
@@ -197,21 +197,21 @@ def run_motion_trial(
     )
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Run the trials."""
-    record = default_gear(small=small)
-    if not small:
+    record = default_gear(quick=quick)
+    if not quick:
         record = with_around(record, MESHES_AROUND)
-    gear, factor = TowedGear(build_model(record)), PRIOR_STD_FACTOR * (0.2 if small else 1.0)
+    gear, factor = TowedGear(build_model(record)), PRIOR_STD_FACTOR * (0.2 if quick else 1.0)
     rows: list[MeasuredValue] = []
-    seeds, duration = (SEEDS[:1], 80.0) if small else (SEEDS, DURATION_S)
+    seeds, duration = (SEEDS[:1], 80.0) if quick else (SEEDS, DURATION_S)
     for words, errors in (('white noise', False), ('all errors as stated', True)):
-        if not (small and errors):
+        if not (quick and errors):
             runs = [
                 partial(run_motion_trial, gear, seed, errors, duration, factor) for seed in seeds
             ]
             rows += _rows(words, runs)
-    if not small:
+    if not quick:
         for along, groups in wrong_predictions(record, READ_SEEDS[1]).items():
             rows += [
                 MeasuredValue(

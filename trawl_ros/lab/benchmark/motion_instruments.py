@@ -166,10 +166,10 @@ def draw_tow(record: GearRecord, seed: int, duration_s: float = DURATION_S) -> P
     TrawlError
         If none of `MOST_DRAWS` boards tows the course.
     """
-    chance = np.random.default_rng(seed)
+    rng = np.random.default_rng(seed)
     for _ in range(MOST_DRAWS):
-        drawn = draw_board(record, PLACES, chance, BoardDraw(std_factor=PRIOR_STD_FACTOR))
-        added_mass = ADDED_MASS_STD * abs(chance.standard_normal())
+        drawn = draw_board(record, PLACES, rng, BoardDraw(std_factor=PRIOR_STD_FACTOR))
+        added_mass = ADDED_MASS_STD * abs(rng.standard_normal())
         try:
             return tow_plant(drawn.gear, added_mass, seed, duration_s)
         except (NoSteadyState, StepFailed):

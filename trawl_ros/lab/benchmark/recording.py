@@ -94,15 +94,15 @@ def record(folder: Path, rate: float, seconds: float) -> Recorded:
     return Recorded(result['published'], recorded, result['behind_s'], cpu_s)
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Record at each rate and count."""
     what = f'messages lost at {RATES_HZ[0]:g} messages/s of all topics'
     asked = MeasuredValue(what, math.nan, target=at_most(0.0))
     if (nothing := without_ros(asked)) is not None:
         return nothing
-    seconds = SMALL_SECONDS if small else DURATION_S
+    seconds = SMALL_SECONDS if quick else DURATION_S
     rows = []
-    for rate in RATES_HZ[:1] if small else RATES_HZ:
+    for rate in RATES_HZ[:1] if quick else RATES_HZ:
         with tempfile.TemporaryDirectory() as name:
             found = record(Path(name), rate, seconds)
         count = sum(found.published.values())

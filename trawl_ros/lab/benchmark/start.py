@@ -76,7 +76,7 @@ def starts(folder: Path) -> tuple[Start, ...]:
     )
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Start one node after another and wait for its first message."""
     what = 'cold start of a node to its first message, wall, the slowest node'
     asked = MeasuredValue(what, math.nan, 's', at_most(LIMIT_S))
@@ -89,13 +89,13 @@ def measure(small: bool) -> Findings:
         bytecode_kept(),
     ):
         folder = Path(name)
-        chosen = starts(folder)[:1] if small else starts(folder)
+        chosen = starts(folder)[:1] if quick else starts(folder)
         begun = {
-            start.node: _begun(start, folder, graph, 1 if small else REPEATS) for start in chosen
+            start.node: _begun(start, folder, graph, 1 if quick else REPEATS) for start in chosen
         }
     times = {node: [one.seconds for one in starts] for node, starts in begun.items()}
     slowest = max(times, key=lambda node: median(times[node]))
-    node = 'bag_recorder' if small else 'sim_node'
+    node = 'bag_recorder' if quick else 'sim_node'
     with bytecode_kept(f'trawl_ros.nodes.{node}'):
         imports = import_s(f'trawl_ros.nodes.{node}')
     total = sum(imports.values())
@@ -113,8 +113,8 @@ def measure(small: bool) -> Findings:
         rows.append(MeasuredValue(f'{node}, wall', median(found), 's', note=note))
     rows += _memory_rows(begun, {start.node for start in chosen if start.needs_truth})
     rows.append(MeasuredValue('of it, imports, wall', total, 's', note=heaviest))
-    if not small:
-        model = build_model(default_gear(small=False))
+    if not quick:
+        model = build_model(default_gear(quick=False))
         seconds = median_s(lambda: steady_state(model, 500.0, 2.0), 3)
         rows.append(
             MeasuredValue(

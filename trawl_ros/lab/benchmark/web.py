@@ -49,7 +49,7 @@ class Stable:
     factor: float
 
 
-def moordyn_web_factor(small: bool) -> float:
+def moordyn_web_factor(quick: bool) -> float:
     """Speed of MoorDyn in times real time, on a web of as many lines and points as the gear.
 
     The doors are prescribed. MoorDyn runs its best scheme at the largest stable step.
@@ -61,18 +61,18 @@ def moordyn_web_factor(small: bool) -> float:
     PeerFailed
         If no scheme is stable.
     """
-    _, found = _web(small)
+    _, found = _web(quick)
     return best_of(found).factor
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Find the largest stable step of each scheme, and time it.
 
     A scheme without a stable step among those tried has no row.
     """
     what = 'MoorDyn on a web of as many lines and points as the gear'
     try:
-        model, found = _web(small)
+        model, found = _web(quick)
         best = best_of(found)
     except (PeerAbsent, PeerFailed) as error:
         return Findings((MeasuredValue(what, math.nan, '× real time', note=str(error)),))
@@ -86,7 +86,7 @@ def measure(small: bool) -> Findings:
         rows.append(
             MeasuredValue(f'the same by {one.scheme}', one.factor, '× real time', note=note)
         )
-    if not small:
+    if not quick:
         rows.append(_smaller(best.scheme, best.damping))
     return Findings(
         tuple(rows),
@@ -100,8 +100,8 @@ def measure(small: bool) -> Findings:
 
 
 def _smaller(scheme: str, damping: float) -> MeasuredValue:
-    model = build_model(with_around(default_gear(small=False), COARSE_AROUND))
-    found = best_of(_stable(model, ((scheme, damping),), small=False))
+    model = build_model(with_around(default_gear(quick=False), COARSE_AROUND))
+    found = best_of(_stable(model, ((scheme, damping),), quick=False))
     note = f'a net of {COARSE_AROUND} meshes around, {len(model.ends)} lines, {model.nodes} points'
     return MeasuredValue('the same on a smaller web', found.factor, '× real time', note=note)
 
@@ -120,16 +120,16 @@ def best_of(found: tuple[Stable, ...]) -> Stable:
 
 
 @cache
-def _web(small: bool) -> tuple[GearModel, tuple[Stable, ...]]:
-    model = build_model(default_gear(small=small))
-    return model, _stable(model, CHOICES[:1] if small else CHOICES, small=small)
+def _web(quick: bool) -> tuple[GearModel, tuple[Stable, ...]]:
+    model = build_model(default_gear(quick=quick))
+    return model, _stable(model, CHOICES[:1] if quick else CHOICES, quick=quick)
 
 
 def _stable(
-    model: GearModel, choices: tuple[tuple[str, float], ...], *, small: bool
+    model: GearModel, choices: tuple[tuple[str, float], ...], *, quick: bool
 ) -> tuple[Stable, ...]:
     start = find_equilibrium(model, POINT)
-    duration, repeats = (0.5, 1) if small else (1.5, 3)
+    duration, repeats = (0.5, 1) if quick else (1.5, 3)
     found = (
         largest_stable(model, start, scheme, damping, duration, repeats)
         for scheme, damping in choices

@@ -78,13 +78,13 @@ Run = Callable[[float], History]
 """Function that runs the manoeuvre with a step size, s."""
 
 
-def measure(small: bool) -> Findings:
+def measure(quick: bool) -> Findings:
     """Find the longest step within the error limit, here and for each scheme of MoorDyn."""
-    manoeuvre = short_manoeuvre() if small else haul_and_turn()
-    ours = fastest(*_own(manoeuvre), small=small)
+    manoeuvre = short_manoeuvre() if quick else haul_and_turn()
+    ours = fastest(*_own(manoeuvre), quick=quick)
     rows = [_own_row(ours)]
     try:
-        theirs = [(choice, _peer(choice, manoeuvre, small=small)) for choice in _choices(small)]
+        theirs = [(choice, _peer(choice, manoeuvre, quick=quick)) for choice in _choices(quick)]
     except PeerAbsent as absent:
         return Findings(
             (*rows, MeasuredValue('the same in MoorDyn', math.nan, '× real time', note=str(absent)))
@@ -113,7 +113,7 @@ def measure(small: bool) -> Findings:
     )
 
 
-def fastest(run: Run, steps: Sequence[float], converged: History, *, small: bool) -> Fastest | None:
+def fastest(run: Run, steps: Sequence[float], converged: History, *, quick: bool) -> Fastest | None:
     """Return the longest step, from long to short, within the limit; None if there is none."""
     for step in steps:
         try:
@@ -122,7 +122,7 @@ def fastest(run: Run, steps: Sequence[float], converged: History, *, small: bool
             continue
         error = apart(first, converged).largest
         if error < MAX_ERROR_SHARE:
-            again = [run(step) for _ in range(0 if small else 4)]
+            again = [run(step) for _ in range(0 if quick else 4)]
             return Fastest(step, error, median(one.factor for one in (first, *again)))
     return None
 
@@ -137,18 +137,18 @@ def _own(manoeuvre: WireManoeuvre) -> tuple[Run, Sequence[float], History]:
     return run, OWN_STEPS, run(OWN_CONVERGED)
 
 
-def _choices(small: bool) -> tuple[SchemeChoice, ...]:
-    return CHOICES[:1] if small else CHOICES
+def _choices(quick: bool) -> tuple[SchemeChoice, ...]:
+    return CHOICES[:1] if quick else CHOICES
 
 
-def _peer(choice: SchemeChoice, manoeuvre: WireManoeuvre, *, small: bool) -> Fastest | None:
+def _peer(choice: SchemeChoice, manoeuvre: WireManoeuvre, *, quick: bool) -> Fastest | None:
     wire = replace(WIRE, damping_time=choice.damping_time)
 
     def run(step: float) -> History:
         return moordyn_history(wire, choice.scheme, step, manoeuvre)
 
     converged = moordyn_history(wire, *CONVERGED, manoeuvre)
-    return fastest(run, choice.steps, converged, small=small)
+    return fastest(run, choice.steps, converged, quick=quick)
 
 
 def moordyn_history(wire: TowedWire, scheme: str, step: float, manoeuvre: WireManoeuvre) -> History:

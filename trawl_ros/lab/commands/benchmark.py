@@ -31,7 +31,7 @@ class MeasuredModule:
 
 
 def write_benchmark(
-    folder: Path, measured: Sequence[MeasuredModule], *, small: bool
+    folder: Path, measured: Sequence[MeasuredModule], *, quick: bool
 ) -> list[MeasuredValue]:
     """Write ``benchmark.json``, ``.md``, ``.html`` and figures into a folder; return the rows."""
     ordered = sorted(measured, key=lambda module: NAMES.index(module.name))
@@ -40,7 +40,7 @@ def write_benchmark(
         name=NAME,
         title='Benchmark',
         command=COMMAND,
-        method=(SMALL if small else '')
+        method=(SMALL if quick else '')
         + f'Everything ran one after another in one process, on {cpu_model()}, with {versions}; '
         f'threads of BLAS: {blas_threads()}. Times are CPU times of the process, all threads '
         'together, and medians over repeats unless it says that something ran once; where it says '
@@ -78,9 +78,9 @@ def row_record(row: MeasuredValue) -> dict[str, object]:
 @REPORT_OPTION
 @FORCE_OPTION
 @click.option(
-    '--small', is_flag=True, help='Small version of every benchmark, which takes seconds.'
+    '--quick', is_flag=True, help='Small version of every benchmark, which takes seconds.'
 )
-def command(names: tuple[str, ...], out: Path, force: bool, small: bool) -> None:
+def command(names: tuple[str, ...], out: Path, force: bool, quick: bool) -> None:
     """Measure speed and its growth with the net, and compare it with other codes.
 
     Runs every benchmark, or those named, one after another, and writes benchmark.json,
@@ -95,10 +95,10 @@ def command(names: tuple[str, ...], out: Path, force: bool, small: bool) -> None
         for number, name in enumerate(chosen):
             display(WorkProgress('measuring', number, len(chosen), 'modules', TITLES[name]))
             began = time.perf_counter()
-            findings = measure(name, small=small)
+            findings = measure(name, quick=quick)
             measured.append(MeasuredModule(name, findings, time.perf_counter() - began))
             for row in findings.rows:
                 wanted = f', asked for {row.wanted}' if row.target is not None else ''
                 console.print(f'{name}: {row.what}: {row.figure}{wanted}', markup=False)
             print_missed(findings.rows, console)
-    print_reached(write_benchmark(out, measured, small=small), out / f'{NAME}.md')
+    print_reached(write_benchmark(out, measured, quick=quick), out / f'{NAME}.md')

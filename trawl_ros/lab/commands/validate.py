@@ -15,11 +15,11 @@ from trawl_ros.lab.validation.run import validate
 @click.argument('cases', nargs=-1, metavar='[CASE]...')
 @REPORT_OPTION
 @FORCE_OPTION
-@click.option('--small', is_flag=True, help='Small version of every case, which takes seconds.')
+@click.option('--quick', is_flag=True, help='Small version of every case, which takes seconds.')
 @click.option(
     '--workers', default=2, show_default=True, type=click.IntRange(1, 64), help='Processes.'
 )
-def command(cases: tuple[str, ...], out: Path, force: bool, small: bool, workers: int) -> None:
+def command(cases: tuple[str, ...], out: Path, force: bool, quick: bool, workers: int) -> None:
     """Check the model against closed forms, the paper and other programs.
 
     Runs every CASE, or those named, and writes validation.json, report.html, report.md and
@@ -39,7 +39,7 @@ def command(cases: tuple[str, ...], out: Path, force: bool, small: bool, workers
         finished = validate(
             out,
             cases,
-            small=small,
+            quick=quick,
             workers=workers,
             force=force,
             on_case=show,

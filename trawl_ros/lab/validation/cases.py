@@ -54,7 +54,7 @@ TITLES: Mapping[str, str] = MappingProxyType(
 class ValidationCase:
     """Case: a name for the command line, a title, and the function that runs it.
 
-    ``run(small)`` runs it; ``small`` is a version for the test suite, which takes seconds.
+    ``run(small)`` runs it; ``quick`` is a version for the test suite, which takes seconds.
     """
 
     name: str

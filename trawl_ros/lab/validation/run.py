@@ -28,7 +28,7 @@ def validate(
     out: str | Path,
     cases: Sequence[str] = (),
     *,
-    small: bool = False,
+    quick: bool = False,
     workers: int = 2,
     force: bool = False,
     on_case: Callable[[Section], None] = lambda case: None,
@@ -42,7 +42,7 @@ def validate(
         Folder for ``validation.json``, ``report.html``, ``report.md`` and their figures.
     cases
         Names of the cases; by default all.
-    small
+    quick
         True if each case runs on less, in seconds.
     workers
         Processes at a time.
@@ -70,7 +70,7 @@ def validate(
     >>> import tempfile
     >>> import trawl_ros
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     (case,) = trawl_ros.validate(folder, ['board_law'], small=True)
+    ...     (case,) = trawl_ros.validate(folder, ['board_law'], quick=True)
     >>> all(check.ok for check in case.rows)
     True
     """
@@ -79,7 +79,7 @@ def validate(
         report_section(name)
     empty_folder(folder, force=force)
     finished: list[Section] = []
-    for case in run_cases(names, folder, small=small, workers=workers):
+    for case in run_cases(names, folder, quick=quick, workers=workers):
         finished.append(case)
         on_case(case)
         on_progress(WorkProgress('validating', len(finished), len(names), 'cases', case.name))
@@ -89,7 +89,7 @@ def validate(
         title='Validation',
         command=COMMAND,
         method='Small version of each case.'
-        if small
+        if quick
         else 'Each case says what it is held against.',
         data='validation',
     )
@@ -99,12 +99,12 @@ def validate(
 
 
 def run_cases(
-    names: Sequence[str], folder: Path, *, small: bool, workers: int
+    names: Sequence[str], folder: Path, *, quick: bool, workers: int
 ) -> Iterator[Section]:
     """Run cases and yield each as it ends; figures go into ``folder``/figures."""
     with ThreadPoolExecutor(workers) as threads:
         first = sorted(names, key=lambda name: name not in LONG)
-        pending = [threads.submit(_apart, name, folder, small) for name in first]
+        pending = [threads.submit(_apart, name, folder, quick) for name in first]
         try:
             for future in as_completed(pending):
                 yield future.result()
@@ -112,23 +112,23 @@ def run_cases(
             threads.shutdown(wait=False, cancel_futures=True)
 
 
-def _apart(name: str, folder: Path, small: bool) -> Section:
+def _apart(name: str, folder: Path, quick: bool) -> Section:
     """Run one case in its own process, so that a crash of a reference code ends only that case."""
     with ProcessPoolExecutor(1, mp_context=PROCESS) as process:
         try:
-            return process.submit(run_case, name, folder, small=small).result()
+            return process.submit(run_case, name, folder, quick=quick).result()
         except BrokenProcessPool:
             return _section(name, _broken('The process that ran it ended without a word.'), 0.0)
 
 
-def run_case(name: str, folder: Path, *, small: bool) -> Section:
+def run_case(name: str, folder: Path, *, quick: bool) -> Section:
     """Run one case in this process and draw its figures.
 
     If the model has no solution, the case fails and the report continues.
     """
     began = time.perf_counter()
     try:
-        findings = load_case(name).run(small)
+        findings = load_case(name).run(quick)
     except TrawlError as error:
         findings = _broken(str(error))
     seconds = time.perf_counter() - began

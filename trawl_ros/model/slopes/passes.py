@@ -10,7 +10,7 @@ import numpy as np
 from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.model.bar import mass_at
 from trawl_ros.model.bar_pass import WaterTable, add_bar_forces
-from trawl_ros.model.compiled import compiled, inner
+from trawl_ros.model.compiled import compiled, njit_device
 from trawl_ros.model.numerics import STEP
 
 
@@ -96,7 +96,7 @@ def add_bar_inertia_slopes(
                 data[slots[36 * number + 6 * (3 * side + i) + 5]] += sunk
 
 
-@inner
+@njit_device
 def _step_lengths(
     sides: IntArray, lengths: FloatArray, segments: float, values: FloatArray, there: FloatArray
 ) -> None:
@@ -106,7 +106,7 @@ def _step_lengths(
         there[n] = values[n] + 1j * STEP * longer
 
 
-@inner
+@njit_device
 def _add_gathered(
     points: IntArray,
     arms: FloatArray,
@@ -271,7 +271,7 @@ def subtract_inertia(
                     into[first + i, column] += pull[i]
 
 
-@inner
+@njit_device
 def _times(matrix: FloatArray, vector: FloatArray, product: FloatArray) -> None:
     for i in range(3):
         product[i] = 0.0

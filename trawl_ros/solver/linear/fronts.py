@@ -8,7 +8,7 @@ functions accept real and complex matrices.
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.model.compiled import fused, inlined
+from trawl_ros.model.compiled import inlined, njit_fastmath
 
 PIVOTS, SIZE, CHILDREN, ENTRIES, BORDER, ROWS, FACTORS = range(7)
 """Columns of `Elimination.fronts`."""
@@ -23,7 +23,7 @@ RIGHTS = 24
 """Right-hand sides of a panel in `solve_many`."""
 
 
-@fused
+@njit_fastmath
 def factorise(
     data: FloatArray,
     fronts: IntArray,
@@ -160,7 +160,7 @@ def _update_by_three(front: FloatArray, k: int) -> None:
             row[j] -= a0 * u0[j] + a1 * u1[j] + a2 * u2[j]
 
 
-@fused
+@njit_fastmath
 def solve(
     rights: FloatArray,
     order: IntArray,
@@ -239,7 +239,7 @@ def solve(
             solutions[right, order[k]] = x[k]
 
 
-@fused
+@njit_fastmath
 def solve_many(
     rights: FloatArray,
     order: IntArray,
@@ -270,7 +270,7 @@ def solve_many(
                 found[begin + m] = row[m]
 
 
-@fused
+@njit_fastmath
 def _solve_panel(
     fronts: IntArray,
     border: IntArray,

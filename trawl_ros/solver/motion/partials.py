@@ -23,7 +23,7 @@ from trawl_ros.model.observables import observe
 from trawl_ros.model.slopes.along import add_forces_along_tow, board_inertia
 from trawl_ros.model.state import State, Tow, TowSlopes
 from trawl_ros.records.observables import OBSERVABLES
-from trawl_ros.solver.likeness import same_mass, same_observables
+from trawl_ros.solver.model_equality import same_mass, same_observables
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.sensitivity import coefficient_pushes

@@ -12,7 +12,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray, Slice
 from trawl_ros.model.assembly import LinearisedForces, linearised
-from trawl_ros.model.compiled import fused
+from trawl_ros.model.compiled import njit_fastmath
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import skew
 from trawl_ros.model.rotations import rotation
@@ -67,9 +67,9 @@ def left_jacobian(vectors: FloatArray) -> FloatArray:
     # J = I + (1 - cos θ)/θ² [w]× + (θ - sin θ)/θ³ [w]×²; series for small θ avoid cancellation.
     square = np.sum(vectors**2, axis=-1)[..., None, None]
     size = np.sqrt(np.maximum(square, 1e-12))
-    small = square < 1e-6
-    first = np.where(small, 0.5 - square / 24, (1 - np.cos(size)) / size**2)
-    second = np.where(small, 1 / 6 - square / 120, (size - np.sin(size)) / size**3)
+    quick = square < 1e-6
+    first = np.where(quick, 0.5 - square / 24, (1 - np.cos(size)) / size**2)
+    second = np.where(quick, 1 / 6 - square / 120, (size - np.sin(size)) / size**3)
     turn = skew(vectors)
     tangent: FloatArray = np.eye(3) + first * turn + second * (turn @ turn)
     return tangent
@@ -226,7 +226,7 @@ class _Weights:
         return cls(known, way, way + scheme.by_position(h) * averaged, pace)
 
 
-@fused
+@njit_fastmath
 def _subtract_history(
     indices: IntArray,
     indptr: IntArray,
@@ -280,7 +280,7 @@ def _subtract_history(
                 )
 
 
-@fused
+@njit_fastmath
 def _carry_on(
     way: FloatArray,
     pace: FloatArray,

@@ -13,7 +13,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.assembly import board_loads, linearised, points_of, rest_lengths
 from trawl_ros.model.bar_pass import add_bar_forces, water_of
-from trawl_ros.model.compiled import alike
+from trawl_ros.model.compiled import promote_dtypes
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.numerics import STEP, outer, skew, stepped
 from trawl_ros.model.state import State, Tow
@@ -90,7 +90,7 @@ class _Rigging:
         rigged, here = model.pattern.rigged, points_of(model, state, self.tow)
         n, ends = model.nodes, model.ends[rigged].ravel()
         moves = np.concatenate([nodes, points.reshape(6, 3), np.zeros((2, 3))])
-        x, v, rest, rate = alike(
+        x, v, rest, rate = promote_dtypes(
             here.positions[ends] + moves[ends],
             here.velocities[ends],
             *(values[rigged] for values in rest_lengths(model, self.tow)),

@@ -22,7 +22,7 @@ LONG = ('degrees_of_freedom', 'identified', 'board_frame')
 
 
 @cache
-def small(name: str) -> Findings:
+def quick(name: str) -> Findings:
     """The small version of a case, run once."""
     return load_case(name).run(True)
 
@@ -36,7 +36,7 @@ def small(name: str) -> Findings:
     ],
 )
 def test_a_small_case_is_whole(name: str) -> None:
-    found = small(name)
+    found = quick(name)
     assert tuple(drawing.name for drawing in found.drawings) == FIGURES[name]
     for table in found.tables:
         assert all(len(row) == len(table.head) for row in table.rows)
@@ -69,6 +69,6 @@ misses: ε +5° raises α by 2.8° only, η +5° lowers δ by 0.4°, and ζ chan
 
 @pytest.mark.timeout(120)
 def test_directions_are_the_papers() -> None:
-    checks = {check.key: check for check in small('sentences').rows}
+    checks = {check.key: check for check in quick('sentences').rows}
     for key in DIRECTIONS:
         assert checks[key].ok, checks[key]

@@ -168,7 +168,7 @@ def test_a_slope_is_between_two_values(published: PublishedHauls) -> None:
 
 
 def test_the_small_version_tells_its_points_beside_the_model() -> None:
-    findings = run(small=True)
+    findings = run(quick=True)
     rows = {row.key: row for row in findings.rows}
     assert rows['found'].value == 100.0
     assert rows['points'].value == 2.0

@@ -134,4 +134,4 @@ def test_a_net_is_led_from_one_state_to_another_and_has_the_drag_of_small_twine(
         assert getattr(led, name) == pytest.approx(getattr(cold, name), rel=0.01)
     power = math.log(net.tension / led.tension) / math.log(STATE.speed / slower.speed)
     assert 1.4 < power < 2.0
-    assert held(coarse, STATE, small=False).tension < 0.9 * net.tension
+    assert held(coarse, STATE, tank_twine=False).tension < 0.9 * net.tension

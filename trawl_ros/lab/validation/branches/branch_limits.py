@@ -186,11 +186,11 @@ def _limit(
     )
 
 
-def limit_findings(model: GearModel, *, small: bool) -> Findings:
-    """Follow all branches of a gear and list their limits; ``small`` follows part of one."""
-    lengths = (MIDDLE,) if small else (300.0, MIDDLE, 700.0)
+def limit_findings(model: GearModel, *, quick: bool) -> Findings:
+    """Follow all branches of a gear and list their limits; ``quick`` follows part of one."""
+    lengths = (MIDDLE,) if quick else (300.0, MIDDLE, 700.0)
     curves = [
-        followed_branch(sweep, 20 if small else 60) for sweep in sweeps(model, lengths, not small)
+        followed_branch(sweep, 20 if quick else 60) for sweep in sweeps(model, lengths, not quick)
     ]
     found = [(curve, list(limits(curve))) for curve in curves]
     return Findings(

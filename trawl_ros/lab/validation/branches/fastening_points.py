@@ -33,16 +33,16 @@ POINTS = 40
 """Number of points along a branch."""
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Trim the gear with its warp point farther forward, and compare."""
     gear = load_gear('kaifuha')
-    if small:
+    if quick:
         netting = gear.netting.model_copy(update={'around': 12})
         gear = gear.model_copy(update={'netting': netting})
     shipped = build_model(gear)
     leans = {'shipped': leaned(shipped)}
     rows = [_fold_row('shipped', 'shipped', _folds(shipped))]
-    for shift in SHIFTS_FORWARD_M[::2] if small else SHIFTS_FORWARD_M:
+    for shift in SHIFTS_FORWARD_M[::2] if quick else SHIFTS_FORWARD_M:
         name, moved = f'{shift:g} m forward', moved_forward(shipped, shift)
         leans[name] = leaned(moved)
         key = f'{100.0 * shift:.0f}_cm'

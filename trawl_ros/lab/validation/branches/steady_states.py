@@ -164,11 +164,11 @@ HOPELESS = 500.0, 1.5
 """Warp length (m) and speed (m/s) at which the gear cannot be towed."""
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Continue over the maps and search from collapsed shapes."""
-    size = SMALL if small else FULL
+    size = SMALL if quick else FULL
     gear = load_gear('kaifuha')
-    if small:
+    if quick:
         coarse = gear.netting.model_copy(update={'around': 12})
         gear = gear.model_copy(update={'netting': coarse})
     model = build_model(gear)
@@ -179,7 +179,7 @@ def run(small: bool) -> Findings:
     speeds = speed_lattice(model, size.lengths, size.speeds)
     angles = [angle_lattice(model, size.angle_lengths, angle, size.degrees) for angle in ANGLES]
     collapsed_checks, collapsed_table = _collapsed(model, size)
-    ends = limit_findings(model, small=small)
+    ends = limit_findings(model, quick=quick)
     return Findings(
         rows=(
             _without_reason(speeds),

@@ -136,7 +136,7 @@ def compare_laws(
     )
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Compare inside and outside the range of the law."""
     random = np.random.default_rng(20)
     default = load_gear('kaifuha')

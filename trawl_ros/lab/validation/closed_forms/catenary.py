@@ -109,9 +109,9 @@ def sagging(segments: int) -> Sagging:
     )
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Compare both wires with their closed forms, the sagging wire at several segment counts."""
-    counts = SEGMENTS[1:4] if small else SEGMENTS
+    counts = SEGMENTS[1:4] if quick else SEGMENTS
     models = {count: sagging(count) for count in counts}
     exact = {count: elastic_catenary(count) for count in counts}
     errors = {

@@ -155,13 +155,13 @@ def advanced(
     return first + advanced(stepper, first[-1], boundary, 0.5 * h, halvings - 1)
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Haul with decreasing steps."""
     gear = load_gear('kaifuha')
-    if small:
+    if quick:
         gear = gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})
-    haul = WireHaul(8.0, 50.0) if small else WireHaul(50.0, 300.0)
-    steps = STEPS[:2] if small else STEPS
+    haul = WireHaul(8.0, 50.0) if quick else WireHaul(50.0, 300.0)
+    steps = STEPS[:2] if quick else STEPS
     model = build_model(gear)
     start = find_equilibrium(model, OperatingPoint(WARP, WARP, SPEED))
     budgets = {h: budget(model, start, haul, h) for h in steps}

@@ -126,10 +126,10 @@ def spun(h: float, seconds: float) -> Spin:
     return Spin(table[:, 0], table[:, 1], table[:, 2], table[:, 3:])
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Let the boards spin with decreasing steps."""
-    seconds = 0.5 * DURATION_S if small else DURATION_S
-    spins = {h: spun(h, seconds) for h in (STEPS if small else (*STEPS, SHORT_STEP_S))}
+    seconds = 0.5 * DURATION_S if quick else DURATION_S
+    spins = {h: spun(h, seconds) for h in (STEPS if quick else (*STEPS, SHORT_STEP_S))}
     momentum = {h: float(spin.momentum.max()) for h, spin in spins.items()}
     energy = {h: float(spin.energy.max()) for h, spin in spins.items()}
     usual = STEPS[-1]
@@ -173,7 +173,7 @@ def run(small: bool) -> Findings:
             key='tumbles',
         ),
     ]
-    if not small:
+    if not quick:
         checks.append(_floor(momentum[SHORT_STEP_S]))
     rows = tuple((f'{h:g}', f'{momentum[h]:.2e}', f'{energy[h]:.2e}') for h in spins)
     return Findings(

@@ -99,7 +99,7 @@ def sinking(slope: float, seconds: float) -> Sinking:
     )
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Release a level line and a sloping one."""
     found = {slope: sinking(np.radians(slope), DURATION_S) for slope in SLOPES}
     level, sloping = (found[slope] for slope in SLOPES)

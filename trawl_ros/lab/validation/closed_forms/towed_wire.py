@@ -109,9 +109,9 @@ def modelled(segments: int) -> Wire:
     )
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Compare at several numbers of segments."""
-    counts = SEGMENTS[1:4] if small else SEGMENTS
+    counts = SEGMENTS[1:4] if quick else SEGMENTS
     exact = {count: integrated(count) for count in counts}
     wires = {count: modelled(count) for count in counts}
     claimed, reference = wires[CLAIMED], exact[CLAIMED]

@@ -65,21 +65,21 @@ DRAWN = (
 TICKS = -50, -20, -10, -5, -2, -1, 0, 1, 2, 5, 10, 20, 50
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Solve all gears and compare."""
-    lengths = (500.0,) if small else (200.0, 500.0, 900.0)
+    lengths = (500.0,) if quick else (200.0, 500.0, 900.0)
     gear = load_gear('kaifuha')
-    if small:
+    if quick:
         gear = around_of(gear, 12)
     default = row('default', gear, lengths)
     finer = [row(name, gear.refined(**factors), lengths) for name, factors in FINER.items()]
     own = gear.netting.around
     more = gear.refined(**FINER['net']).netting.around
-    counts = [] if small else [count for count in SERIES if count not in (own, more)]
+    counts = [] if quick else [count for count in SERIES if count not in (own, more)]
     series = {count: row(str(count), around_of(gear, count), lengths) for count in counts}
     series[own] = default
     series[more] = next(one for one in finer if one.name == 'net')
-    bowed_rows, bowed_table = bowed_nets(gear, (own, more) if small else BOWED_MESHES_AROUND)
+    bowed_rows, bowed_table = bowed_nets(gear, (own, more) if quick else BOWED_MESHES_AROUND)
     return Findings(
         rows=(*_checks(default, finer, lengths, series), *bowed_rows),
         drawings=(

@@ -200,11 +200,11 @@ def convergence(runs: Sequence[SteppedManoeuvre]) -> Convergence:
     )
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Run both manoeuvres at several steps."""
-    size = SMALL if small else FULL
+    size = SMALL if quick else FULL
     gear = load_gear('kaifuha')
-    if small:
+    if quick:
         coarse = gear.netting.model_copy(update={'around': 12})
         gear = gear.model_copy(update={'netting': coarse})
     bowed = gear.netting.model_copy(update={'bowing_pressure_pa': BOWING_PRESSURE_PA})

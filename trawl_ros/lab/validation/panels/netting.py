@@ -164,7 +164,7 @@ def added_by_knots(knot: KnotRecord, net: NettingRecord) -> float:
     return float(with_knots / without - 1.0)
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Compare every published panel with the model."""
     published, net = published_panels(), load_gear(GEAR).netting
     every = [point for panel in published.panels for point in points_of(panel, net)]
@@ -200,7 +200,7 @@ def run(small: bool) -> Findings:
             key='solidities',
         )
     )
-    nets = whole_nets(tuple(NETS)[-2:] if small else tuple(NETS))
+    nets = whole_nets(tuple(NETS)[-2:] if quick else tuple(NETS))
     inside = [flag for net in nets for flag in net.inside]
     rows += [
         MeasuredValue(

@@ -96,10 +96,10 @@ class Judgement:
     refusal: str = ''
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Trim the gear for each reading, tow it, and evaluate the claims on its boards."""
-    rigging, model = FEW if small else Rigging(), paper_model(True)
-    names = list(READINGS)[:2] if small else READINGS
+    rigging, model = FEW if quick else Rigging(), paper_model(True)
+    names = list(READINGS)[:2] if quick else READINGS
     found = [judged(name, read_as(model, READINGS[name]), rigging) for name in names]
     own, others = found[0], found[1:]
     return Findings(

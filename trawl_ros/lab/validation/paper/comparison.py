@@ -136,10 +136,10 @@ def column(channel: str) -> int:
 
 
 @cache
-def compare_trial(small: bool) -> Comparison:
+def compare_trial(quick: bool) -> Comparison:
     """Compare the gear of the paper with the sample trial; in a process once."""
-    lengths = FEW_LENGTHS if small else LENGTHS
-    return compare(paper_model(small), trial_windows(small), lengths)
+    lengths = FEW_LENGTHS if quick else LENGTHS
+    return compare(paper_model(quick), trial_windows(quick), lengths)
 
 
 def compare(

@@ -19,9 +19,9 @@ PANELS = (
 )
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Compare the two kinds of boards with the sample trial."""
-    seen = compare_trial(small)
+    seen = compare_trial(quick)
     solved = np.isfinite(seen.trial_six).all(1) & np.isfinite(seen.trial_three).all(1)
     checks = (
         MeasuredValue(

@@ -14,10 +14,10 @@ from trawl_ros.report.pictures import Drawing
 ATTACK = np.radians(np.linspace(0.0, 40.0, 81))
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Fit the default gear to the sample trial."""
-    windows = trial_windows(small)
-    fit = refit_trial(small)
+    windows = trial_windows(quick)
+    fit = refit_trial(quick)
     checks = (
         MeasuredValue(
             'states of the trial in the fit',

@@ -34,10 +34,10 @@ PANELS: tuple[tuple[str, str, Callable[[Observables], float]], ...] = (
 )
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Turn the boards of the default gear by up to 5° about each of their axes."""
-    turns = FEW_TURNS if small else TURNS
-    found = installation_sweep(paper_model(small), turns)
+    turns = FEW_TURNS if quick else TURNS
+    found = installation_sweep(paper_model(quick), turns)
     checks = (
         MeasuredValue(
             'turned gears with a stable steady state under water, boards within their law',

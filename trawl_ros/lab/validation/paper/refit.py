@@ -85,9 +85,9 @@ class PaperRefit:
 
 
 @cache
-def refit_trial(small: bool) -> PaperRefit:
+def refit_trial(quick: bool) -> PaperRefit:
     """Fit the gear of the paper to the sample trial; in a process once."""
-    return refit_paper_trial(gear(small), trial_windows(small))
+    return refit_paper_trial(gear(quick), trial_windows(quick))
 
 
 def refit_paper_trial(record: GearRecord, windows: Sequence[SteadyWindow]) -> PaperRefit:

@@ -13,15 +13,15 @@ from trawl_ros.lab.validation.paper.refit import refit_trial
 from trawl_ros.lab.validation.paper.sweeps import FEW_TURNS, faster, installation_sweep, paper_model
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Evaluate all claims."""
-    model = paper_model(small)
+    model = paper_model(quick)
     changes = Changes(installation_sweep(model, FEW_TURNS), faster(model))
     claims = (
-        *identification_claims(refit_trial(small)),
+        *identification_claims(refit_trial(quick)),
         *installation_claims(changes),
         *turned_board_claims(changes),
-        *degree_claims(compare_trial(small)),
+        *degree_claims(compare_trial(quick)),
     )
     agree = sum(one.agrees == 'yes' for one in claims)
     return Findings(

@@ -75,10 +75,10 @@ class Sighting:
     board: BoardReading
 
 
-def gear(small: bool) -> GearRecord:
+def gear(quick: bool) -> GearRecord:
     """The gear of the paper; in the small version with a coarser net."""
     record = load_gear('kaifuha')
-    if not small:
+    if not quick:
         return record
     netting = record.netting.model_copy(
         update={'around': record.netting.around // COARSENING_FACTOR}
@@ -86,9 +86,9 @@ def gear(small: bool) -> GearRecord:
     return record.model_copy(update={'netting': netting})
 
 
-def paper_model(small: bool) -> GearModel:
+def paper_model(quick: bool) -> GearModel:
     """Model of the paper's gear with the coefficients of eq. 37."""
-    return build_model(gear(small))
+    return build_model(gear(quick))
 
 
 def sighting(model: GearModel, steady: SteadyState) -> Sighting:

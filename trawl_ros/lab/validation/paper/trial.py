@@ -24,7 +24,7 @@ FEWER = 4
 
 
 @cache
-def trial_windows(small: bool) -> tuple[SteadyWindow, ...]:
+def trial_windows(quick: bool) -> tuple[SteadyWindow, ...]:
     """The first steady window of each state of the trial, in the order of time."""
     finder = SteadyWindowFinder(build_water(load_gear('kaifuha')).depth)
     found = []
@@ -36,7 +36,7 @@ def trial_windows(small: bool) -> tuple[SteadyWindow, ...]:
         if isinstance(window, SteadyWindow):
             first.setdefault(window.state, window)
     windows = tuple(first.values())
-    return windows[::FEWER] if small else windows
+    return windows[::FEWER] if quick else windows
 
 
 def warp_length(window: SteadyWindow) -> float:

@@ -18,10 +18,10 @@ from trawl_ros.lab.validation.paper.sweeps import (
 from trawl_ros.report.pictures import Drawing
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Solve the default gear from 200 to 900 m of warp."""
-    lengths = FEW_LENGTHS if small else LENGTHS
-    model = paper_model(small)
+    lengths = FEW_LENGTHS if quick else LENGTHS
+    model = paper_model(quick)
     sweep = warp_sweep(model, lengths, SPEED)
     seen = [steady.observables for steady in sweep]
     normals = [sighting(model, steady).board.normal for steady in sweep]

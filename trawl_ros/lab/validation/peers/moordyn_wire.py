@@ -38,15 +38,15 @@ UNITS: Mapping[str, str] = {'depth': 'm', 'lag': 'm', 'tension': 'N'}
 OURS, PEER = 'trawl_ros', 'MoorDyn'
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Tow, haul and turn the same wire in both programs."""
-    manoeuvre = short_manoeuvre() if small else haul_and_turn()
+    manoeuvre = short_manoeuvre() if quick else haul_and_turn()
     model = own_model(WIRE, SEGMENTS)
     start, ours = own_steady(WIRE, model)
     own = own_history(model, start, manoeuvre, OWN_STEP)
     lump = (INTEGRATED.lag, INTEGRATED.depth)
     with closing(MoorDynWire(WIRE, SEGMENTS, SCHEME, STEP, lump)) as wire:
-        theirs = wire.settle(0.3 * SETTLING_S if small else SETTLING_S)
+        theirs = wire.settle(0.3 * SETTLING_S if quick else SETTLING_S)
         peer = wire.follow(manoeuvre)
     difference = apart(own, peer)
     return Findings(

@@ -13,8 +13,8 @@ MAX_DIFFERENCE = 0.01
 """Largest allowed difference, as a share."""
 
 
-def run(small: bool) -> Findings:
-    """Solve the same steady tow in both programs; ``small`` makes no difference."""
+def run(quick: bool) -> Findings:
+    """Solve the same steady tow in both programs; ``quick`` makes no difference."""
     _, ours = own_steady(WIRE, own_model(WIRE, SEGMENTS))
     theirs = MoorPyWire(WIRE).solve()
     names = (('depth', 'm'), ('lag', 'm'), ('tension', 'N'))

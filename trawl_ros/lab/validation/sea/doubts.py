@@ -76,13 +76,13 @@ DOUBTS = (
 crews change it. Length of warps and weights are printed for some hauls, as their list says."""
 
 
-def doubts_table(hauls: Sequence[ModelledHaul], *, small: bool) -> TextTable:
+def doubts_table(hauls: Sequence[ModelledHaul], *, quick: bool) -> TextTable:
     """Points that count and are missed, with what they need of each number alone."""
     rows: list[tuple[str, ...]] = []
     for one in hauls:
         missed = [p for p in one.haul.points if abs(one.error(p)) > NEAR_PERCENT]
         if one.haul.use == 'counts' and missed and one.observables is not None:
-            rows += _rows(one, missed, small=small)
+            rows += _rows(one, missed, quick=quick)
     return TextTable(
         f'Points that count and are off by more than {NEAR_PERCENT:g} %: each number changed '
         'alone, and the factors on it, of those tried, with which the point comes within '
@@ -93,9 +93,9 @@ def doubts_table(hauls: Sequence[ModelledHaul], *, small: bool) -> TextTable:
 
 
 def _rows(
-    one: ModelledHaul, missed: Sequence[PointRecord], *, small: bool
+    one: ModelledHaul, missed: Sequence[PointRecord], *, quick: bool
 ) -> list[tuple[str, ...]]:
-    gear = one.haul.rigged(gear_record(one.gear, small=small))
+    gear = one.haul.rigged(gear_record(one.gear, quick=quick))
     start = steady_state(build_model(gear), one.haul.warp_m, one.haul.speed).equilibrium
     rows = []
     for doubt in DOUBTS:

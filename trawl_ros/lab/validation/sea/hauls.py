@@ -108,11 +108,11 @@ def counted(hauls: Sequence[ModelledHaul]) -> list[tuple[ModelledHaul, PointReco
     return [(one, p) for one in hauls if one.haul.use == 'counts' for p in one.haul.points]
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Compare every published haul with the model."""
     published = published_hauls()
-    gears = [gear for gear in published.gears if not small or gear.gear in SMALL]
-    hauls = [one for gear in gears for one in modelled(gear, small=small)]
+    gears = [gear for gear in published.gears if not quick or gear.gear in SMALL]
+    hauls = [one for gear in gears for one in modelled(gear, quick=quick)]
     by_name = {(one.gear.gear, one.haul.name): one for one in hauls}
     trends = [trend for trend in published.trends if (trend.gear, trend.first) in by_name]
     counting = [trend for trend in trends if trend.counts]
@@ -204,8 +204,8 @@ def run(small: bool) -> Findings:
             points_table(hauls, published),
             trends_table(trends, by_name),
             ratios_table(trends, by_name),
-            changes_table(hauls, small=small),
-            doubts_table(hauls, small=small),
+            changes_table(hauls, quick=quick),
+            doubts_table(hauls, quick=quick),
             gears_table(gears, published),
             TextTable(
                 'Looked at and not used.',

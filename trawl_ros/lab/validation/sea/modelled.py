@@ -35,15 +35,15 @@ class ModelledHaul:
         return math.inf if math.isnan(value) else 100.0 * (value / point.value - 1.0)
 
 
-def gear_record(gear: GearHauls, *, small: bool) -> GearRecord:
-    """Gear of these hauls; with ``small``, its net cut coarsely."""
+def gear_record(gear: GearHauls, *, quick: bool) -> GearRecord:
+    """Gear of these hauls; with ``quick``, its net cut coarsely."""
     record = load_gear(gear.gear)
-    return record.refined(net=0.4) if small else record
+    return record.refined(net=0.4) if quick else record
 
 
-def modelled(gear: GearHauls, *, small: bool) -> list[ModelledHaul]:
+def modelled(gear: GearHauls, *, quick: bool) -> list[ModelledHaul]:
     """Find the steady state of each haul: cold, or else from the hauls before it."""
-    record = gear_record(gear, small=small)
+    record = gear_record(gear, quick=quick)
     results: list[ModelledHaul] = []
     known: list[Equilibrium] = []
     for haul in gear.hauls:

@@ -27,8 +27,8 @@ def thinner(plan: NetPlanRecord, change: ThinnerRecord) -> NetPlanRecord:
     TrawlError
         If these pieces have less twine than is to be taken off.
     """
-    small = [piece for piece in plan.pieces if piece.mesh_mm <= change.mesh_up_to_mm]
-    share = sum(piece.twine_area for piece in small) / sum(
+    quick = [piece for piece in plan.pieces if piece.mesh_mm <= change.mesh_up_to_mm]
+    share = sum(piece.twine_area for piece in quick) / sum(
         piece.twine_area for piece in plan.pieces
     )
     if share <= change.area_off:
@@ -37,7 +37,7 @@ def thinner(plan: NetPlanRecord, change: ThinnerRecord) -> NetPlanRecord:
             f'share of the twine area in meshes up to {change.mesh_up_to_mm:g} mm'
         )
     factor = 1.0 - change.area_off / share
-    pieces = tuple(_thinned(piece, factor) if piece in small else piece for piece in plan.pieces)
+    pieces = tuple(_thinned(piece, factor) if piece in quick else piece for piece in plan.pieces)
     return plan.model_copy(update={'pieces': pieces})
 
 

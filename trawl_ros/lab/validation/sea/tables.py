@@ -137,14 +137,14 @@ def ratios_table(trends: Sequence[TrendRecord], hauls: Modelled) -> TextTable:
     )
 
 
-def changes_table(hauls: Sequence[ModelledHaul], *, small: bool) -> TextTable:
+def changes_table(hauls: Sequence[ModelledHaul], *, quick: bool) -> TextTable:
     """Points that count and are missed, with changes of what was not measured."""
     rows = []
     for one in hauls:
         missed = [p for p in one.haul.points if abs(one.error(p)) > NEAR_PERCENT]
         if one.haul.use != 'counts' or not missed:
             continue
-        changed = changed_hauls(gear_record(one.gear, small=small), one.haul)
+        changed = changed_hauls(gear_record(one.gear, quick=quick), one.haul)
         for point in missed:
             values = (value_of(*seen, point.quantity) for seen in changed)
             rows.append(

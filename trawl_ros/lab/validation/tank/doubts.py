@@ -32,19 +32,19 @@ class Doubt:
     """Assumed value of the tank's model, with the factors to vary it by.
 
     ``change`` scales the value by a factor, and ``low`` and ``high`` are the factors to try. If
-    ``small`` is False, the twine has its drag at sea instead of that in the tank.
+    ``tank_twine`` is False, the twine has its drag at sea instead of that in the tank.
     """
 
     what: str
     change: Callable[[GearRecord, float], GearRecord] = lambda gear, factor: gear
     low: float = 1.0
     high: float = 1.0
-    small: bool = True
+    tank_twine: bool = True
 
     @property
     def factors(self) -> tuple[float, ...]:
         """Factors that are tried; NaN for twine that is not small."""
-        if not self.small:
+        if not self.tank_twine:
             return (math.nan,)
         return tuple(factor for factor in (self.low, self.high) if factor != 1.0)
 
@@ -118,7 +118,7 @@ DOUBTS = (
     Doubt('upper bridles, weight', _rope('bridle', 'weight_in_water_n_m'), 0.0, 1.5),
     Doubt('floats (printed), buoyancy', _floats, 1.0, 2.0),
     Doubt('growth of drag at low Reynolds numbers', _netting('viscous'), 0.0, 1.0),
-    Doubt('twine as large as at sea', small=False),
+    Doubt('twine as large as at sea', tank_twine=False),
 )
 
 
@@ -141,7 +141,7 @@ def doubted(gear: GearRecord, states: Sequence[FlumeState]) -> list[Doubted]:
     def solved(doubt: Doubt | None, factor: float, trial: str) -> HeldNet | None:
         changed = gear if doubt is None else doubt.change(gear, factor)
         try:
-            return held(changed, by_trial[trial], small=doubt is None or doubt.small)
+            return held(changed, by_trial[trial], tank_twine=doubt is None or doubt.tank_twine)
         except NoSteadyState:
             return None
 
@@ -185,7 +185,7 @@ def doubts_table(every: Sequence[Doubted], states: Sequence[FlumeState]) -> Text
         powers = {f: _exponent(net, one.slow[f]) for f, net in one.shown.items()}
         needs = (
             ('', '')
-            if not one.doubt.small
+            if not one.doubt.tank_twine
             else (
                 need_in_words(heights, tank.height, POINT_TOLERANCE_SHARE),
                 need_in_words(powers, power, EXPONENT_TOLERANCE / power),

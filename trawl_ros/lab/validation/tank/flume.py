@@ -293,7 +293,7 @@ SMALL = 3
 """States of the small version, with a coarse net."""
 
 
-def run(small: bool) -> Findings:
+def run(quick: bool) -> Findings:
     """Solve all states of the table, and every doubt about assumed numbers.
 
     Without the table nothing is run, and a sentence says so.
@@ -304,12 +304,12 @@ def run(small: bool) -> Findings:
         )
         return Findings((), tables=(TextTable('Not run', ('why',), ((why,),)),), text=why)
     gear, states = load_gear(GEAR), read_states(TABLE)
-    if small:
+    if quick:
         netting = gear.netting.model_copy(update={'around': 24})
         gear = gear.model_copy(update={'netting': netting})
         states = [state for state in states if state.trial in SERIES][:SMALL]
     every = compared(gear, states)
-    doubts = [] if small else doubted(gear, states)
+    doubts = [] if quick else doubted(gear, states)
     tables = [_table(every), further_table(every)]
     tables += [doubts_table(doubts, states)] if doubts else []
     drawing = Drawing('flume', 'Model over tank; open marks do not count.', _figure(every))

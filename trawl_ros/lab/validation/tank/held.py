@@ -126,14 +126,14 @@ def held(
     state: FlumeState,
     near: HeldNet | None = None,
     *,
-    small: bool = True,
+    tank_twine: bool = True,
 ) -> HeldNet:
     """Find the net of a state, with its footrope on the floor.
 
     The floor carries sweeps and lower bridles, and of the footrope as much as lets its middle lie
     where the floor is: what is left on the net is sought, spread evenly. There is no friction.
-    Its twine is ``small`` as in the tank, or as large as at sea. The search begins at ``near``, or
-    cold.
+    Its twine is that of the tank where ``tank_twine`` is true, else as large as at sea. The search
+    begins at ``near``, or cold.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def held(
 
     def below(share: float, start: Equilibrium | None) -> tuple[float, GearModel, Equilibrium]:
         model = build_model(_rigged(gear, state, share))
-        model = in_the_tank(model) if small else model
+        model = in_the_tank(model) if tank_twine else model
         found = find_equilibrium(model, point, start)
         seen = found.observables
         return seen.net_depth + seen.vertical_opening - state.elevation, model, found
