@@ -33,8 +33,8 @@ ROOT = Path(__file__).parents[2]
 HAUL_LOG = ROOT.parent / 'shared/data/noaa_trawlmetrics/gear_testing_2026_haul_log.csv'
 HAUL_MAPPING = ROOT / 'config/logs/door_test_haul_log.yaml'
 
-SETTLE_S, WINDOW_S = 10.0, 20.0
-LENGTH_S = 49
+SETTLE_S, WINDOW_S = 10.0, 30.0
+LENGTH_S = 62
 """One window's worth of steady towing, and as much more as late readings may take."""
 
 
@@ -71,7 +71,6 @@ def session(open_graph, steady_bag, gear_path, estimate_listener, tmp_path_facto
             settle_s=SETTLE_S,
             settle_passages=0.0,
             window_s=WINDOW_S,
-            advise_share=1.0,
             output=str(Session.output),
         )
         listener = graph.add(estimate_listener)
