@@ -12,14 +12,14 @@ from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample, WinchSample
 
 BACK_NS = 10 * SECOND
-"""Stamps that go back by more than this play anew; less is a message that is late."""
+"""Stamps that go back by more than this (ns) belong to a new run; by less, to a late message."""
 
 MOST_HELD = 2000
 """Samples held back at most: what all instruments say in some ten seconds."""
 
 
 class Rewinding:
-    """Detector of a rewound stream, such as a bag that loops, told from single false stamps.
+    """Detector of a rewound stream, such as a bag that loops; single false stamps do not count.
 
     The winch tells the time, for without it there are no windows. What goes back is held until
     three of its readings in a row do, or one does not: forgetting all for one false stamp
@@ -47,7 +47,7 @@ class Rewinding:
         Returns
         -------
         bool
-            True if the stream begins anew before these samples.
+            True if the stream begins again before these samples.
         list of Sample
             Samples to deal with now, in order of arrival.
         """

@@ -23,7 +23,7 @@ class RealTimeFactor:
         self._reported_at = clock()
 
     def reached(self, stamp: int) -> None:
-        """Register a stamp (ns). An earlier one than before begins anew and counts nothing."""
+        """Register a stamp (ns). One earlier than the last begins a new run and counts nothing."""
         if self._latest is not None:
             self._gone += max(0, stamp - self._latest)
         self._latest = stamp

@@ -1,5 +1,6 @@
 """Worker thread that does queued work in order and survives its errors."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator
 from queue import Empty, SimpleQueue
 from threading import Event, Lock, Thread
@@ -15,7 +16,7 @@ take the processor from the worker.
 """
 
 
-class Worker(Thread, Generic[Work]):
+class Worker(Thread, ABC, Generic[Work]):
     """Worker thread with one queue; nothing that its work uses may be used by other threads.
 
     Coroutines may await the worker: that lasts until all queued work is done.
@@ -57,9 +58,9 @@ class Worker(Thread, Generic[Work]):
         self._queue.put(None)
         self.join()
 
+    @abstractmethod
     def do(self, work: Work) -> None:
         """Do a piece of work, in this thread."""
-        raise NotImplementedError
 
     def patience_s(self) -> float | None:
         """Return the time (s) without work after which `be_quiet` is called; None for never."""
