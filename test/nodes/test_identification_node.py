@@ -71,6 +71,7 @@ def session(open_graph, steady_bag, gear_path, estimate_listener, tmp_path_facto
             settle_s=SETTLE_S,
             settle_passages=0.0,
             window_s=WINDOW_S,
+            advise_share=0.5,
             output=str(Session.output),
         )
         listener = graph.add(estimate_listener)

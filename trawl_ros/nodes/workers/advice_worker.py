@@ -88,16 +88,19 @@ class AdviceWorker(Worker[object]):
             self._on_advice(self._advice, self._adviser.trouble)
 
     def _solve_all(self) -> None:
+        compiled = False
         while not self._stopped.is_set():
             if not self._at_rest_elsewhere():
                 self._stopped.wait(IDLE_S)
                 continue
             self._fresh.clear()
             began = time.thread_time()
-            if self._telling('solving', self._solve_next) and self._more:
-                self._stopped.wait((time.thread_time() - began) * (1.0 / self._share - 1.0))
-            else:
+            if not self._telling('solving', self._solve_next) or not self._more:
                 self._fresh.wait()
+            elif compiled:
+                self._stopped.wait((time.thread_time() - began) * (1.0 / self._share - 1.0))
+            # The first one may compile for half a minute, which says nothing of what one costs.
+            compiled = True
 
     def _solve_next(self) -> None:
         fit = self._fit
