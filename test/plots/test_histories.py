@@ -21,9 +21,10 @@ def panel(figure, label):
 def test_truth_is_a_thin_line_and_readings_are_dots(tow):
     axes = panel(history_figure(tow), 'door depth / m')
     dots = [line for line in axes.lines if line.get_linestyle() == 'None']
-    lines = [line for line in axes.lines if line.get_linestyle() == '-']
+    lines = [line for line in axes.lines if line.get_linestyle() != 'None']
     assert [to_hex(line.get_color()) for line in dots] == [style.PORT, style.STARBOARD]
-    assert len(lines) == 2
+    assert dots[0].get_marker() != dots[1].get_marker()
+    assert [line.get_linestyle() for line in lines] == ['-', '--']
     assert all(line.get_linewidth() <= 1.0 and line.get_marker() == 'None' for line in lines)
     assert axes.yaxis_inverted()
     minutes, depths = lines[0].get_data()

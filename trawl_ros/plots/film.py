@@ -83,6 +83,7 @@ def _draw(views: gear.Views, frame: Frame, *, with_sonar: bool) -> list[Artist]:
     drawn = [
         *gear.draw_gear(frame.shape, views.top, gear.ABOVE),
         *gear.draw_gear(frame.shape, views.side, gear.BESIDE),
+        *gear.write_sizes(frame.shape, views),
     ]
     if not with_sonar:
         drawn += gear.draw_gear(frame.shape, views.right, gear.BEHIND)

@@ -34,6 +34,9 @@ DOOR_COLOURS = {DOOR_FRAMES['port']: style.PORT, DOOR_FRAMES['starboard']: style
 ABOVE, BESIDE, BEHIND = (0, 1), (0, 2), (1, 2)
 """Axes (of astern, to port, up) that are drawn to the right and up."""
 
+SIZES = '#333333'
+"""Colour of the sizes that are written on the gear."""
+
 LEFT_IN, RIGHT_IN, TITLE_IN, FOOT_IN, GAP_IN = 0.8, 0.25, 0.55, 0.65, 0.4
 """Room (inches) beside, above, below and between the views."""
 
@@ -60,6 +63,11 @@ def gear_figure(shape: GearShape, name: str) -> Figure:
     prepare_rear(views.right, extent([shape], rear=True))
     for axes, plane in ((views.top, ABOVE), (views.side, BESIDE), (views.right, BEHIND)):
         draw_gear(shape, axes, plane)
+    write_sizes(shape, views)
+    if size := opening_size(shape):
+        views.right.set_title(
+            'from behind: {:.0f} m high, {:.0f} m wide'.format(*size), fontsize=10
+        )
     title = f'{name} at {style.clock(shape.time)}: {shape.source}'
     views.figure.suptitle(title, parse_math=False)
     if shape.by_tension:
@@ -152,6 +160,48 @@ def draw_gear(shape: GearShape, axes: Axes, plane: tuple[int, int]) -> list[Arti
                 color=DOOR_COLOURS[strand.name], markersize=4.5, markeredgecolor='white', zorder=4,
             )  # fmt: skip
     return drawn
+
+
+def write_sizes(shape: GearShape, views: Views) -> list[Artist]:
+    """Write spread and depth (m) of the doors on the views from above and from the side."""
+    points = {strand.name: strand.pieces.reshape(-1, 3) for strand in shape.strands}
+    drawn: list[Artist] = []
+    doors = [points[name].mean(axis=0) for name in DOOR_FRAMES.values() if name in points]
+    if len(doors) == 2:
+        port, starboard = doors
+        drawn.append(
+            views.top.annotate(
+                '', port[:2], starboard[:2], arrowprops={'arrowstyle': '<->', 'color': SIZES}
+            )
+        )
+        middle = 0.5 * (port + starboard)
+        spread = float(np.linalg.norm(port - starboard))
+        drawn.append(views.top.text(*middle[:2], f' {spread:.0f} m', color=SIZES, va='center'))
+        drawn.append(
+            views.side.annotate(
+                f'doors {-middle[2]:.0f} m deep',
+                (middle[0], middle[2]),
+                (-6.0, -12.0),
+                textcoords='offset points',
+                color=SIZES,
+                ha='right',
+                va='top',
+            )
+        )
+    return drawn
+
+
+def opening_size(shape: GearShape) -> tuple[float, float] | None:
+    """Height and width (m) of the mouth; None for a shape without headrope or footrope."""
+    ropes = [
+        [strand.pieces.reshape(-1, 3) for strand in shape.strands if strand.name.endswith(rope)]
+        for rope in ('headrope', 'footrope')
+    ]
+    if not all(ropes):
+        return None
+    head, foot = map(np.concatenate, ropes)
+    width = float(np.ptp(np.concatenate([head, foot])[:, 1]))
+    return float(head[:, 2].max() - foot[:, 2].min()), width
 
 
 def _seen_from_behind(strand: Strand) -> bool:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.transforms import blended_transform_factory
+from scipy.ndimage import median_filter
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.plots.records import Series, TowHistory
@@ -20,25 +21,40 @@ from trawl_ros.report import style
 LONGEST_PERIODS, LEAST_SILENCE_S = 4.0, 10.0
 """A sensor is silent when nothing has come for so many of its periods, and for so long (s)."""
 
-FAR_OUT = 3.0
-"""Readings are cut at the edge if all of them need this many times the height."""
+
+@dataclass(frozen=True)
+class DotOptions:
+    """Options of the dots that show readings.
+
+    Attributes
+    ----------
+    most : int
+        Number of dots of a curve; of more readings every so-manieth is drawn.
+    neighbours : int
+        Number of readings whose median tells whether one of them is an outlier.
+    far_std : float
+        Distance from that median, in robust standard deviations, beyond which a reading is an
+        outlier (Hampel's filter) and does not widen the axis.
+    """
+
+    most: int = 600
+    neighbours: int = 15
+    far_std: float = 6.0
 
 
-ORDINARY = (5.0, 95.0)
-"""Percentiles between which readings count as ordinary and not as outliers."""
-
-MANY = 1000
-"""Number of dots from which on each is drawn fainter."""
+DOTS = DotOptions()
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Curve: a quantity of `TowHistory` with its label and the colours of readings and truth."""
+    """Curve: a quantity of `TowHistory` with its label, and how readings and truth look."""
 
     name: str
     label: str
     colour: str
     truth_colour: str
+    marker: str = 'o'
+    dashes: str = '-'
 
 
 @dataclass(frozen=True)
@@ -58,8 +74,10 @@ class Panel:
 def _sides(name: str) -> tuple[Curve, Curve]:
     return (
         Curve(f'port_{name}', 'port', style.PORT, style.PORT_TRUTH),
-        Curve(f'starboard_{name}', 'starboard', style.STARBOARD, style.STARBOARD_TRUTH),
-    )
+        Curve(
+            f'starboard_{name}', 'starboard', style.STARBOARD, style.STARBOARD_TRUTH, '+', '--',
+        ),
+    )  # fmt: skip
 
 
 def _one(name: str, label: str = '') -> Curve:
@@ -150,7 +168,10 @@ def history_figure(tow: TowHistory) -> Figure:
 
 
 _GREY = '#666666'
-_SIDES = (Patch(color=style.PORT), Patch(color=style.STARBOARD))
+_SIDES = (
+    Line2D([], [], color=style.PORT, marker='o', ms=4.0),
+    Line2D([], [], color=style.STARBOARD, marker='+', ls='--'),
+)
 
 
 def _draw(axes: Axes, panel: Panel, tow: TowHistory, marks: dict[str, Line2D | Patch]) -> None:
@@ -162,17 +183,20 @@ def _draw(axes: Axes, panel: Panel, tow: TowHistory, marks: dict[str, Line2D | P
     )
     low, high = _limits(list(truth.values()), list(measured.values()), panel.least)
     axes.set_ylim((high, low) if panel.down else (low, high))
+    beyond = 0
     for number, (curve, series) in enumerate(measured.items()):
         marks['measured'] = Line2D([], [], color=_GREY, ls='', marker='.')
-        if _dots(axes, series, curve.colour, (low, high)):
-            marks['measured, beyond the axis'] = Line2D(
-                [], [], color=_GREY, ls='', marker='^', ms=5
-            )
+        beyond += _dots(axes, series, curve, (low, high))
         if _silences(axes, silences(series, tow.duration_s), curve.colour, number):
             marks['bar at the foot: silent'] = Patch(color=_GREY, alpha=0.5)
+    if beyond:
+        marks['measured, beyond the axis'] = Line2D([], [], color=_GREY, ls='', marker='^', ms=5)
+        axes.set_title(f'{beyond} beyond the axis', loc='right', fontsize='small', color=_GREY)
     for curve, series in truth.items():
         times, values = _with_gaps(series)
-        axes.plot(times / 60.0, values, color=curve.truth_colour, linewidth=1.0, zorder=3)
+        axes.plot(
+            times / 60.0, values, curve.dashes, color=curve.truth_colour, linewidth=1.0, zorder=3
+        )
     _label(axes, panel)
 
 
@@ -199,41 +223,50 @@ def _shown(series: Series, panel: Panel) -> Series:
 def _limits(
     truth: Sequence[Series], measured: Sequence[Series], least: float
 ) -> tuple[float, float]:
-    """Limits that hold all values except far outliers that would hide the rest."""
-    true, read = (
-        np.concatenate([[], *(series.values[np.isfinite(series.values)] for series in kind)])
-        for kind in (truth, measured)
-    )
-    every = np.concatenate([true, read])
+    """Limits that hold the truth and all readings that are not outliers."""
+    true = [series.values[np.isfinite(series.values)] for series in truth]
+    every = np.concatenate([[], *true, *map(_ordinary, measured)])
     if not len(every):
         return 0.0, least
     low, high = float(every.min()), float(every.max())
-    inner = np.concatenate([true, np.percentile(read, ORDINARY) if len(read) else read])
-    span = max(float(np.ptp(inner)), least)
-    if high - low > FAR_OUT * span:
-        low, high = float(inner.min()) - 0.3 * span, float(inner.max()) + 0.3 * span
     short = max(least - (high - low), 0.0)
     margin = 0.06 * (high - low + short)
     return low - 0.5 * short - margin, high + 0.5 * short + margin
 
 
-def _dots(axes: Axes, series: Series, colour: str, limits: tuple[float, float]) -> bool:
-    """Draw readings; return True if some lie beyond the axis and are drawn at its edge."""
-    many = len(series.values)
-    size = float(np.clip(60.0 / np.sqrt(max(many, 1)), 1.2, 4.0))
-    dots: dict[str, Any] = {'color': colour, 'ls': '', 'zorder': 2, 'markeredgewidth': 0.0}
-    alpha = 0.5 if many < MANY else 0.3
-    axes.plot(series.times / 60.0, series.values, marker='o', ms=size, alpha=alpha, **dots)
+def _ordinary(series: Series) -> FloatArray:
+    """Readings near the median of their neighbours: an echo is left out, a haul is not."""
+    values = series.values[np.isfinite(series.values)]
+    if not len(values):
+        return values
+    off = np.abs(values - median_filter(values, size=DOTS.neighbours, mode='nearest'))
+    std = max(1.4826 * float(np.median(off)), 1e-3 * float(np.median(np.abs(values))))
+    return values[off <= DOTS.far_std * std]
+
+
+def _dots(axes: Axes, series: Series, curve: Curve, limits: tuple[float, float]) -> int:
+    """Draw readings; return the number that lie beyond the axis and are drawn at its edge."""
+    step = max(len(series.values) // DOTS.most, 1)
+    # Sides lie on each other: one has full dots, the other crosses, at other times.
+    drawn = slice(step // 2 if curve.marker == '+' else 0, None, step)
+    size = float(np.clip(60.0 / np.sqrt(max(len(series.values[drawn]), 1)), 1.8, 4.0))
+    look: dict[str, Any] = {'color': curve.colour, 'ls': '', 'zorder': 2}
+    width = 0.0 if curve.marker == 'o' else 0.6
+    axes.plot(
+        series.times[drawn] / 60.0, series.values[drawn], marker=curve.marker, alpha=0.6,
+        ms=size if curve.marker == 'o' else 1.6 * size, markeredgewidth=width, **look,
+    )  # fmt: skip
     low, high = limits
-    beyond = False
+    beyond = 0
     for out, edge in ((series.values > high, high), (series.values < low, low)):
         if out.any():
-            beyond = True
             marker = '^' if (edge == high) != axes.yaxis_inverted() else 'v'
             times = series.times[out] / 60.0
             axes.plot(
-                times, np.full(len(times), edge), marker=marker, ms=5.0, clip_on=False, **dots
-            )
+                times, np.full(len(times), edge), marker=marker, ms=5.0, clip_on=False,
+                markeredgewidth=0.0, **look,
+            )  # fmt: skip
+            beyond += len(times)
     return beyond
 
 

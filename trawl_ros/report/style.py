@@ -5,10 +5,10 @@ from matplotlib.axes import Axes
 
 from trawl_ros.core.arrays import FloatArray
 
-PORT, STARBOARD = '#d62728', '#2ca02c'
-"""Red and green, as the side lights of a ship."""
+PORT, STARBOARD = '#d62728', '#009e73'
+"""Red and green, as the side lights of a ship; the green has enough blue for the colour-blind."""
 
-PORT_TRUTH, STARBOARD_TRUTH = '#5a0a0b', '#0b4410'
+PORT_TRUTH, STARBOARD_TRUTH = '#5a0a0b', '#00523b'
 MEASURED, SECOND = '#1f77b4', '#e08214'
 MEASURED_TRUTH, SECOND_TRUTH = '#0b2f4a', '#6b3c05'
 SURFACE, NETTING, FAINT = '#4a90c2', '#7f8c8d', '#9aa5ab'

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.plots.histories import FAR_OUT, PANELS, Curve, Panel
+from trawl_ros.plots.histories import PANELS, Curve, Panel
 from trawl_ros.plots.records import Kind
 from trawl_ros.records.truth import SIDES
 from trawl_ros.report import style
@@ -15,6 +15,9 @@ from trawl_ros.report import style
 ROOT = '/histories'
 
 HEADING = 'heading'
+
+FAR_RANGE_RATIO = 3.0
+"""An axis leaves outliers out if all readings need this many times the height of the others."""
 
 _DEPTHS = ('port_door_depth', 'starboard_door_depth', 'net_depth')
 
@@ -217,6 +220,6 @@ def _limits(kinds: dict[str, _Thinned], least: float) -> tuple[float, float] | N
     if extent < least:
         middle = 0.5 * (low + high)
         return middle - 0.5 * least, middle + 0.5 * least
-    if extent <= FAR_OUT * room:
+    if extent <= FAR_RANGE_RATIO * room:
         return None
     return low - ROOM * room, high + ROOM * room
