@@ -8,7 +8,14 @@ from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.lab.validation.panels.netting import panel_loads
 from trawl_ros.lab.validation.panels.published import netting_of
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.model.net.wake import VISCOSITY, exposure, exposure_of, sheet, slowed, viscous
+from trawl_ros.model.net.wake import (
+    KINEMATIC_VISCOSITY_M2_S,
+    exposure,
+    exposure_of,
+    sheet,
+    slowed,
+    viscous,
+)
 
 ANGLE = np.pi / 4
 
@@ -76,10 +83,10 @@ def test_netting_without_shielding_has_the_drag_of_its_single_twines() -> None:
 def test_coefficients_grow_with_the_root_of_the_reynolds_number(net: NettingRecord) -> None:
     speed, diameter = 0.5, 1.5e-3
     across, along = viscous(net, diameter)
-    reynolds = speed * diameter / VISCOSITY
+    reynolds = speed * diameter / KINEMATIC_VISCOSITY_M2_S
     assert net.normal_drag * across / np.sqrt(speed) == pytest.approx(4.0 / np.sqrt(reynolds))
     # Along, π μ 0.55 Re^1/2 U_t per length is ½ ρ π d C_f U_t².
-    expected = 2.0 * 0.55 * np.sqrt(reynolds) * VISCOSITY / diameter
+    expected = 2.0 * 0.55 * np.sqrt(reynolds) * KINEMATIC_VISCOSITY_M2_S / diameter
     assert net.friction * along * np.sqrt(speed) == pytest.approx(expected)
     assert viscous(net.model_copy(update={'viscous': 0.0}), diameter) == (0.0, 0.0)
 

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from trawl_ros.cli.policy import command
 from trawl_ros.core.resources import share_path
 from trawl_ros.records.permissions import policy
-from trawl_ros.records.rights import OPERATOR, RIGHTS, SET_POINTS
+from trawl_ros.records.rights import NODE_RIGHTS, OPERATOR, SET_POINTS
 from trawl_ros.records.topics import COMMANDS, STATIC_TRANSFORMS, SYNC, TOPICS
 
 
@@ -34,7 +34,7 @@ def test_the_file_that_ships_is_what_the_command_prints() -> None:
 
 def test_every_node_of_the_package_has_rights() -> None:
     programs = {entry.name for entry in distribution('trawl_ros').entry_points}
-    assert set(RIGHTS) == programs - {'trawl'}
+    assert set(NODE_RIGHTS) == programs - {'trawl'}
 
 
 def test_nobody_but_controllers_set_points_and_an_operator_commands() -> None:
@@ -58,7 +58,7 @@ def test_topics_are_those_of_the_table() -> None:
 
 def test_enclaves_and_services_follow_the_namespace() -> None:
     paths = granted('fleet/one', 'reply')
-    assert set(paths) == {f'/fleet/one/{node}' for node in (*RIGHTS, SET_POINTS, OPERATOR)}
+    assert set(paths) == {f'/fleet/one/{node}' for node in (*NODE_RIGHTS, SET_POINTS, OPERATOR)}
     assert 'winch_node/set_parameters' in granted('fleet/one', 'request')[f'/fleet/one/{OPERATOR}']
 
 

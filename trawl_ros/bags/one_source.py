@@ -21,16 +21,16 @@ from trawl_ros.core.stamps import CONFIRMING_READINGS, lasting, when
 from trawl_ros.core.time import SECOND
 from trawl_ros.records.samples import SENSORS, Sample
 
-BLOCK = 60
+JUDGED_READINGS = 60
 """Number of readings that are judged together; rare oddities are faults and no second source."""
 
-RETURNS = 3
+MIN_ALTERNATIONS = 3
 """Number of returns of a channel after another one from which on the channels alternate."""
 
-SHARE = 0.25
+MIN_ODD_SHARE = 0.25
 """Share of a block with stamps that one source does not give."""
 
-JUMP = 2.0
+MIN_STEP_RATIO = 2.0
 """Smallest ratio of the step to the next reading to the step to the one after that.
 
 Waves have moved on after two steps.
@@ -45,7 +45,7 @@ Slower readings may alternate because the swell has twice their interval.
 ALTERNATING = 0.9
 """Share of the steps in a block that turn back."""
 
-MEMORY = 4 * BLOCK
+KEPT_READINGS = 4 * JUDGED_READINGS
 """Number of readings that are searched for those of a slower source."""
 
 VISITS = 6
@@ -57,7 +57,7 @@ SPREAD = 0.3
 These are their distance from the other source's readings, and the time between them.
 """
 
-MOST = 0.9
+FIRST_COURSE_QUANTILE = 0.9
 """Share of the readings on the first course that deviate by less than the second course does."""
 
 ONE_PERIOD = 1.5
@@ -116,10 +116,10 @@ class SourceWatch:
         self._sequences.append(sequence)
         self._values.extend(values)
         self._count += 1
-        if self._count % (BLOCK // 2) == 0:
+        if self._count % (JUDGED_READINGS // 2) == 0:
             for numbers in (self._channels, self._stamps, self._sequences):
-                del numbers[:-MEMORY]
-            del self._values[: -MEMORY * len(values)]
+                del numbers[:-KEPT_READINGS]
+            del self._values[: -KEPT_READINGS * len(values)]
             self._doubt = self._judge()
         return self._doubt
 
@@ -138,7 +138,7 @@ class SourceWatch:
             self._step = None
 
     def _judge(self) -> Doubt | None:
-        stamps, channels = np.array(self._stamps), self._channels[-BLOCK:]
+        stamps, channels = np.array(self._stamps), self._channels[-JUDGED_READINGS:]
         if (doubt := _still(stamps) or self._set_back()) is not None:
             return doubt
         why = self._second_source(stamps, channels)
@@ -154,11 +154,11 @@ class SourceWatch:
             _, before, after = self._step
             return _clock_set_back(f'at {when(before)}, by {lasting(before - after)}')
         # Sorted by their stamps, readings of before and after stand between each other.
-        order = np.diff(np.array(self._sequences[-BLOCK:]))
-        ahead = order[order > BLOCK // 2]
+        order = np.diff(np.array(self._sequences[-JUDGED_READINGS:]))
+        ahead = order[order > JUDGED_READINGS // 2]
         if (
             len(ahead) < SETTLED_READINGS
-            or np.count_nonzero(order < -(BLOCK // 2)) < SETTLED_READINGS
+            or np.count_nonzero(order < -(JUDGED_READINGS // 2)) < SETTLED_READINGS
         ):
             return None
         return _clock_set_back(
@@ -170,18 +170,18 @@ class SourceWatch:
         readings = np.array(self._values).reshape(len(stamps), -1)
         if channels.count(channels[0]) < len(channels) and (why := _by_turns(channels)):
             return why
-        steps, values = np.diff(stamps[-BLOCK:]), readings[-BLOCK:]
+        steps, values = np.diff(stamps[-JUDGED_READINGS:]), readings[-JUDGED_READINGS:]
         number = len(values)
         if (least := steps.min()) <= 0:
             again = ~np.all((values[1:] == values[:-1]) | np.isnan(values[1:]), axis=1)
             twice = int(np.count_nonzero((steps == 0) & again))
-            if twice >= SHARE * BLOCK:
+            if twice >= MIN_ODD_SHARE * JUDGED_READINGS:
                 return f'{twice} of {number} stamps come twice, with two readings'
             back = int(np.count_nonzero(steps < 0))
-            if back >= SHARE * BLOCK:
+            if back >= MIN_ODD_SHARE * JUDGED_READINGS:
                 return f'{back} of {number} stamps go back in time'
         near = least <= LONGEST_STEP and median(steps.tolist()) <= LONGEST_STEP
-        if near and number == BLOCK and _alternates(values):
+        if near and number == JUDGED_READINGS and _alternates(values):
             return f'{number} readings jump back and forth between two courses'
         if visits := _visits(stamps, readings):
             return f'{visits} of {len(readings)} readings lie on a second course'
@@ -191,10 +191,11 @@ class SourceWatch:
 def _still(stamps: StampArray) -> Doubt | None:
     """Describe stamps (n,) that stand still."""
     last = int(stamps[-1])
-    if np.any(stamps[-BLOCK // 2 :] != last):
+    if np.any(stamps[-JUDGED_READINGS // 2 :] != last):
         return None
     found = 'never stamps' if last == 0 else f'has a clock that stands still ({when(last)})'
-    return Doubt('stamp', f'{found}: all of {BLOCK // 2} stamps are {last}; expected the time of '
+    same = JUDGED_READINGS // 2
+    return Doubt('stamp', f'{found}: all of {same} stamps are {last}; expected the time of '
                  'each reading')  # fmt: skip
 
 
@@ -210,7 +211,7 @@ def _by_turns(channels: Sequence[int]) -> str:
     for before, channel in zip((None, *channels), channels, strict=False):
         returns += channel != before and channel in met
         met.add(channel)
-    return f'it alternates between {len(met)} channels' if returns >= RETURNS else ''
+    return f'it alternates between {len(met)} channels' if returns >= MIN_ALTERNATIONS else ''
 
 
 def _alternates(values: FloatArray) -> bool:
@@ -220,7 +221,7 @@ def _alternates(values: FloatArray) -> bool:
         turns = np.count_nonzero(steps[1:] * steps[:-1] < 0.0, axis=0)
         for course in np.flatnonzero(turns >= ALTERNATING * (len(steps) - 1)):
             beyond = abs(values[2:, course] - values[:-2, course])
-            if median(abs(steps[:, course]).tolist()) > JUMP * median(beyond.tolist()):
+            if median(abs(steps[:, course]).tolist()) > MIN_STEP_RATIO * median(beyond.tolist()):
                 return True
     return False
 
@@ -269,7 +270,9 @@ def _on_second(times: FloatArray, values: FloatArray, chosen: BoolArray) -> int:
         return 0
     # Of the others, each with the number of chosen ones before it.
     others = np.concatenate(([True], ~chosen, [True]))
-    if np.median(out[chosen]) < JUMP * np.quantile(abs(_departures(values[others])), MOST):
+    if np.median(out[chosen]) < MIN_STEP_RATIO * np.quantile(
+        abs(_departures(values[others])), FIRST_COURSE_QUANTILE
+    ):
         return 0
     gaps, between = np.diff(times[others]), np.diff(np.cumsum(~others)[others]) > 0
     if np.count_nonzero(~between) < VISITS:

@@ -17,7 +17,7 @@ from trawl_ros.plots.records import SCHOOLS, GearShape, Strand
 from trawl_ros.records.topics import DOOR_FRAMES, VESSEL
 from trawl_ros.report import style
 
-BOLD = (
+BOLD_STRANDS = (
     '_warp',
     '_bridle',
     '_sweep',
@@ -150,7 +150,7 @@ def draw_gear(shape: GearShape, axes: Axes, plane: tuple[int, int]) -> list[Arti
         lines = LineCollection(
             list(strand.pieces[:, :, plane]),
             colors=strand.colours,
-            linewidths=1.8 if strand.name.endswith(BOLD) else 0.5,
+            linewidths=1.8 if strand.name.endswith(BOLD_STRANDS) else 0.5,
             capstyle='round',
         )
         drawn.append(axes.add_collection(lines))

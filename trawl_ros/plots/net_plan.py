@@ -14,7 +14,7 @@ FACES = {'wing': '#dfeaf2', 'body': '#f4f1e8', 'codend': '#ece4ee'}
 LABEL_LENGTH = 0.03
 """Pieces shorter than this share of the net get no label of their own."""
 
-ROOM = 0.35
+LABEL_WIDTH_SHARE = 0.35
 """Share of the picture's half width that a piece needs for its label."""
 
 Shape = tuple[PieceRecord, list[tuple[float, float]]]
@@ -104,7 +104,7 @@ def _label(axes: Axes, piece: PieceRecord, corners: list[tuple[float, float]], w
     across, behind = np.mean(corners, axis=0)
     # Words that are wider than their piece stand beside it.
     right = max(corner[0] for corner in corners)
-    fits = piece.part == 'wing' or right > ROOM * wide
+    fits = piece.part == 'wing' or right > LABEL_WIDTH_SHARE * wide
     knots = ', knotless' if piece.knots == 'knotless' else ''
     whole = ' around' if piece.panel == 'all' else ''
     counts = f'{piece.mesh_mm:g} mm, {piece.front_meshes:g}–{piece.back_meshes:g} × '

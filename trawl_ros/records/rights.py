@@ -105,7 +105,7 @@ def _rights(node: str) -> Rights:
     return Rights((*_names(publishes), *told), (*_names(hears), *waits), _SERVICES.get(node, ()))
 
 
-RIGHTS = {node: _rights(node) for node in _SERVICES}
+NODE_RIGHTS = {node: _rights(node) for node in _SERVICES}
 """Rights by the name of the node."""
 
 OPERATOR = 'operator'
@@ -121,16 +121,16 @@ an enclave of their own.
 
 def enclaves() -> dict[str, Rights]:
     """Return the rights by enclave: those of the nodes, of set points and of an operator."""
-    said, own = RIGHTS['nmea_in'].publishes, _rights(SET_POINTS)
+    said, own = NODE_RIGHTS['nmea_in'].publishes, _rights(SET_POINTS)
     commanding = Rights((*said, *own.publishes), own.hears)
-    return {**RIGHTS, SET_POINTS: commanding, OPERATOR: operator_rights()}
+    return {**NODE_RIGHTS, SET_POINTS: commanding, OPERATOR: operator_rights()}
 
 
 def operator_rights() -> Rights:
     """Return the rights of an operator: to read every topic and use every command and service."""
     services = [
         service.replace('~', node)
-        for node, rights in RIGHTS.items()
+        for node, rights in NODE_RIGHTS.items()
         for service in (*rights.answers, *EVERY_NODE.answers)
     ]
     return Rights(

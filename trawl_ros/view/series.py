@@ -70,7 +70,7 @@ MOST_KEPT = 2_000
 ORDINARY_PERCENTILES = (10.0, 90.0)
 """Percentiles between which readings are ordinary, if there is no truth."""
 
-ROOM = 0.3
+FREE_HEIGHT_SHARE = 0.3
 """Share of the height that stays free at the top and at the bottom."""
 
 RGB = tuple[int, int, int]
@@ -222,4 +222,4 @@ def _limits(kinds: dict[str, _Thinned], least: float) -> tuple[float, float] | N
         return middle - 0.5 * least, middle + 0.5 * least
     if extent <= FAR_RANGE_RATIO * room:
         return None
-    return low - ROOM * room, high + ROOM * room
+    return low - FREE_HEIGHT_SHARE * room, high + FREE_HEIGHT_SHARE * room

@@ -17,7 +17,7 @@ from trawl_ros.messages.cdr import deserialize, serialize  # noqa: E402
 from trawl_ros.messages.commands import winch_command  # noqa: E402
 from trawl_ros.messages.fields import not_finite  # noqa: E402
 from trawl_ros.messages.to_messages import sample_message  # noqa: E402
-from trawl_ros.records.rights import RIGHTS  # noqa: E402
+from trawl_ros.records.rights import NODE_RIGHTS  # noqa: E402
 from trawl_ros.records.samples import RangeSample  # noqa: E402
 
 pytestmark = pytest.mark.ros
@@ -60,7 +60,7 @@ def test_no_node_ends_and_nothing_moves_silently(show):
     show('Hostile messages', rows)
     attacked = {tally.node for tally in found.tallies}
     # The viewers' nodes need libraries of the extra `view`.
-    assert set(RIGHTS) - attacked <= {'foxglove_node', 'view_node'}
+    assert set(NODE_RIGHTS) - attacked <= {'foxglove_node', 'view_node'}
     assert [step.done for step in steps] == list(range(len(attacked) + 2))
     assert not [row for row in rows[0 if FULL else 1 :] if not row.ok]
     assert found.moved.windows[0] > 0

@@ -40,7 +40,7 @@ Record = Schema | Channel | Message
 BYTES_PER_MESSAGE = 8
 """Bytes of a file for each message beyond `BAG_MESSAGES`; its entry in an index takes 16."""
 
-RATIO = 200
+UNPACKED_PER_BYTE = 200
 """Unpacked bytes per byte of a file, beyond `BAG_UNPACKED`; bags of tows have 8."""
 
 STEP_BYTES = 1 << 20
@@ -71,7 +71,7 @@ class Allowance:
     def __init__(self, path: Path, size: int) -> None:
         self._path = path
         self._size = size
-        self._bytes = BAG_UNPACKED.value + RATIO * size
+        self._bytes = BAG_UNPACKED.value + UNPACKED_PER_BYTE * size
         self._records = BAG_MESSAGES.value + size // BYTES_PER_MESSAGE
 
     def take_bytes(self, count: int) -> None:
@@ -84,7 +84,7 @@ class Allowance:
         """
         self._bytes -= count
         if self._bytes < 0:
-            raise self._beyond(f'{BAG_UNPACKED} and {RATIO} per byte')
+            raise self._beyond(f'{BAG_UNPACKED} and {UNPACKED_PER_BYTE} per byte')
 
     def take_records(self, plain: bytes) -> None:
         """Count the records in bytes that are about to be parsed.

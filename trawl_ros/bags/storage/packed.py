@@ -15,8 +15,8 @@ import zstandard
 
 from trawl_ros.bags.storage.chunks import (
     MAX_CHUNK_BYTES,
-    RATIO,
     STEP_BYTES,
+    UNPACKED_PER_BYTE,
     Allowance,
     Damaged,
     read_up_to,
@@ -86,7 +86,7 @@ class Unpacked:
         try:
             free = shutil.disk_usage(folder).free - SPARE_BYTES
             with open_file(path, BagError) as source, plain.open('xb') as target:
-                most = BAG_UNPACKED.value + RATIO * path.stat().st_size
+                most = BAG_UNPACKED.value + UNPACKED_PER_BYTE * path.stat().st_size
                 inflate_file(source, target, min(free, most))
         except Damaged as reason:
             raise BagError(f'{path}: cannot be unpacked ({reason})') from reason

@@ -49,7 +49,7 @@ class FixedPoint:
 
 WATER_ITERATION = FixedPoint()
 
-VISCOSITY = 1.36e-6
+KINEMATIC_VISCOSITY_M2_S = 1.36e-6
 """Kinematic viscosity of sea water of 35 g/kg at 10 °C, m²/s (ITTC 7.5-02-01-03)."""
 
 ACROSS_GROWTH, ALONG_GROWTH, KNOT_GROWTH = 4.0, 1.1, 15.0
@@ -212,11 +212,11 @@ def exposure(section: SectionRecord, net: NettingRecord, closing: float = 0.0) -
 
 def viscous(net: NettingRecord, diameter: float) -> tuple[float, float]:
     """Return the viscous parts (√(m/s)) of a twine's drag across and along, for `bar.drag_at`."""
-    scale = net.viscous * sqrt(VISCOSITY / diameter) if diameter > 0.0 else 0.0
+    scale = net.viscous * sqrt(KINEMATIC_VISCOSITY_M2_S / diameter) if diameter > 0.0 else 0.0
     across = ACROSS_GROWTH * scale / net.normal_drag if net.normal_drag else 0.0
     return across, ALONG_GROWTH * scale / net.friction if net.friction else 0.0
 
 
 def viscous_knots(net: NettingRecord, diameter: float) -> float:
     """Return the viscous drag coefficient (√(m/s)) of knots of a diameter (m)."""
-    return net.knot_drag * KNOT_GROWTH * net.viscous * sqrt(VISCOSITY / diameter)
+    return net.knot_drag * KNOT_GROWTH * net.viscous * sqrt(KINEMATIC_VISCOSITY_M2_S / diameter)

@@ -18,7 +18,7 @@ from scipy.sparse.linalg import splu
 from trawl_ros.core.arrays import IntArray
 from trawl_ros.model.pattern import SparsityPattern
 
-BLOCK = 3
+UNKNOWNS_PER_BLOCK = 3
 """Unknowns of a block."""
 
 MAX_MERGED_ZERO_BLOCKS = 4
@@ -73,10 +73,10 @@ class _Front:
 @lru_cache(maxsize=16)
 def elimination(pattern: SparsityPattern) -> Elimination:
     """Find the order of elimination and the fronts of a pattern."""
-    starts = pattern.indptr[::BLOCK]
+    starts = pattern.indptr[::UNKNOWNS_PER_BLOCK]
     touched = [
-        pattern.indices[start : start + count : BLOCK] // BLOCK
-        for start, count in zip(starts, np.diff(pattern.indptr)[::BLOCK], strict=False)
+        pattern.indices[start : start + count : UNKNOWNS_PER_BLOCK] // UNKNOWNS_PER_BLOCK
+        for start, count in zip(starts, np.diff(pattern.indptr)[::UNKNOWNS_PER_BLOCK], strict=False)
     ]
     sequence = _minimum_degree(touched)
     return _numbered(pattern, sequence, _postordered(_trees(touched, sequence)))
@@ -152,7 +152,7 @@ def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]
             rows.append(_rows(border, firsts[parent], pivots[parent], borders[parent]))
     blocks = sequence[by_sequence]
     slots, places, entries = _assembly(pattern, blocks, owner, firsts, pivots, borders)
-    pivots, sizes = BLOCK * pivots, BLOCK * sizes
+    pivots, sizes = UNKNOWNS_PER_BLOCK * pivots, UNKNOWNS_PER_BLOCK * sizes
     edges = sizes - pivots
     factors = pivots * (sizes + edges)
     table = np.column_stack(
@@ -162,7 +162,7 @@ def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]
             [len(front.children) for front in fronts],
             np.cumsum(entries),
             np.cumsum(edges) - edges,
-            np.cumsum(edges // BLOCK) - edges // BLOCK,
+            np.cumsum(edges // UNKNOWNS_PER_BLOCK) - edges // UNKNOWNS_PER_BLOCK,
             np.cumsum(factors) - factors,
         ]
     )
@@ -172,7 +172,8 @@ def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]
         slots=slots.astype(np.uint32),
         places=places.astype(np.uint32),
         border=_unknowns(np.concatenate(borders)).astype(np.uint32),
-        parents_rows=BLOCK * np.concatenate(rows or [np.empty(0, int)]).astype(np.uint32),
+        parents_rows=UNKNOWNS_PER_BLOCK
+        * np.concatenate(rows or [np.empty(0, int)]).astype(np.uint32),
         fill=int(factors.sum()),
         largest=int(sizes.max()),
         waiting=_most_waiting(table, edges),
@@ -180,7 +181,9 @@ def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]
 
 
 def _unknowns(blocks: IntArray) -> IntArray:
-    unknowns: IntArray = (BLOCK * blocks[:, None] + np.arange(BLOCK)).ravel()
+    unknowns: IntArray = (
+        UNKNOWNS_PER_BLOCK * blocks[:, None] + np.arange(UNKNOWNS_PER_BLOCK)
+    ).ravel()
     return unknowns
 
 
@@ -204,16 +207,23 @@ def _assembly(
     """
     place = np.argsort(blocks)
     columns = np.repeat(np.arange(pattern.dof), np.diff(pattern.indptr))
-    row, column = place[pattern.indices // BLOCK], place[columns // BLOCK]
+    row, column = place[pattern.indices // UNKNOWNS_PER_BLOCK], place[columns // UNKNOWNS_PER_BLOCK]
     front = owner[np.minimum(row, column)]
     slots = np.argsort(front, kind='stable')
     entries = np.bincount(front, minlength=len(borders))
     places = np.empty(len(slots), int)
     for number, chosen in enumerate(np.split(slots, np.cumsum(entries)[:-1])):
         at = firsts[number], pivots[number], borders[number]
-        down = BLOCK * _rows(row[chosen], *at) + pattern.indices[chosen] % BLOCK
-        across = BLOCK * _rows(column[chosen], *at) + columns[chosen] % BLOCK
-        places[chosen] = down * BLOCK * (pivots[number] + len(borders[number])) + across
+        down = (
+            UNKNOWNS_PER_BLOCK * _rows(row[chosen], *at)
+            + pattern.indices[chosen] % UNKNOWNS_PER_BLOCK
+        )
+        across = (
+            UNKNOWNS_PER_BLOCK * _rows(column[chosen], *at) + columns[chosen] % UNKNOWNS_PER_BLOCK
+        )
+        places[chosen] = (
+            down * UNKNOWNS_PER_BLOCK * (pivots[number] + len(borders[number])) + across
+        )
     return slots, places[slots], entries
 
 

@@ -19,7 +19,7 @@ PIVOTS_AT_ONCE = 6
 EXCHANGE_RATIO = 10.0
 """A pivot is exchanged if another of its front is larger by this factor."""
 
-RIGHTS = 24
+PANEL_COLUMNS = 24
 """Right-hand sides of a panel in `solve_many`."""
 
 
@@ -254,18 +254,24 @@ def solve_many(
     Each number of the factors is used for a whole panel while it is in a register. The width is a
     compile-time constant, so the compiler can vectorise and rule out overlapping rows.
     """
-    panel = np.empty(RIGHTS * len(order), rights.dtype)
-    for begin in range(0, rights.shape[1], RIGHTS):
-        wide = min(RIGHTS, rights.shape[1] - begin)
+    panel = np.empty(PANEL_COLUMNS * len(order), rights.dtype)
+    for begin in range(0, rights.shape[1], PANEL_COLUMNS):
+        wide = min(PANEL_COLUMNS, rights.shape[1] - begin)
         for k in range(len(order)):
-            row, given = panel[RIGHTS * k : RIGHTS * k + RIGHTS], rights[order[k]]
+            row, given = (
+                panel[PANEL_COLUMNS * k : PANEL_COLUMNS * k + PANEL_COLUMNS],
+                rights[order[k]],
+            )
             for m in range(wide):
                 row[m] = given[begin + m]
-            for m in range(wide, RIGHTS):
+            for m in range(wide, PANEL_COLUMNS):
                 row[m] = 0.0
         _solve_panel(fronts, border, factors, exchanged, panel)
         for k in range(len(order)):
-            row, found = panel[RIGHTS * k : RIGHTS * k + RIGHTS], solutions[order[k]]
+            row, found = (
+                panel[PANEL_COLUMNS * k : PANEL_COLUMNS * k + PANEL_COLUMNS],
+                solutions[order[k]],
+            )
             for m in range(wide):
                 found[begin + m] = row[m]
 
@@ -288,18 +294,18 @@ def _solve_panel(
         for k in range(pivots):
             other = exchanged[first + k]
             if other != k:
-                for m in range(RIGHTS):
-                    i, j = RIGHTS * (first + k) + m, RIGHTS * (first + other) + m
+                for m in range(PANEL_COLUMNS):
+                    i, j = PANEL_COLUMNS * (first + k) + m, PANEL_COLUMNS * (first + other) + m
                     panel[i], panel[j] = panel[j], panel[i]
         for k in range(0, pivots, 3):
             three = _block(panel, first + k)
             for j in range(0, k, 3):
                 _subtract(three, upper[k : k + 3, j : j + 3], _block(panel, first + j))
             a, b, c = upper[k + 1, k], upper[k + 2, k], upper[k + 2, k + 1]
-            for m in range(RIGHTS):
-                value = three[RIGHTS + m] - a * three[m]
-                three[RIGHTS + m] = value
-                three[2 * RIGHTS + m] -= b * three[m] + c * value
+            for m in range(PANEL_COLUMNS):
+                value = three[PANEL_COLUMNS + m] - a * three[m]
+                three[PANEL_COLUMNS + m] = value
+                three[2 * PANEL_COLUMNS + m] -= b * three[m] + c * value
         for i in range(0, edge, 3):
             three = _block(panel, border[begin + i])
             for k in range(0, pivots, 3):
@@ -319,18 +325,18 @@ def _solve_panel(
                 _subtract(three, rows[:, j : j + 3], _block(panel, first + j))
             a, b, c = rows[0, k + 1], rows[0, k + 2], rows[1, k + 2]
             inverse = rows[0, k], rows[1, k + 1], rows[2, k + 2]
-            for m in range(RIGHTS):
-                last = three[2 * RIGHTS + m] * inverse[2]
-                value = (three[RIGHTS + m] - c * last) * inverse[1]
-                three[2 * RIGHTS + m] = last
-                three[RIGHTS + m] = value
+            for m in range(PANEL_COLUMNS):
+                last = three[2 * PANEL_COLUMNS + m] * inverse[2]
+                value = (three[PANEL_COLUMNS + m] - c * last) * inverse[1]
+                three[2 * PANEL_COLUMNS + m] = last
+                three[PANEL_COLUMNS + m] = value
                 three[m] = (three[m] - a * value - b * last) * inverse[0]
 
 
 @inlined
 def _block(panel: FloatArray, row: int) -> FloatArray:
     """Return three consecutive rows of a panel, from this one."""
-    return panel[RIGHTS * row : RIGHTS * row + 3 * RIGHTS]
+    return panel[PANEL_COLUMNS * row : PANEL_COLUMNS * row + 3 * PANEL_COLUMNS]
 
 
 @inlined
@@ -339,11 +345,11 @@ def _subtract(three: FloatArray, share: FloatArray, others: FloatArray) -> None:
     a, b, c = share[0, 0], share[0, 1], share[0, 2]
     d, e, f = share[1, 0], share[1, 1], share[1, 2]
     g, h, i = share[2, 0], share[2, 1], share[2, 2]
-    for m in range(RIGHTS):
-        x, y, z = others[m], others[RIGHTS + m], others[2 * RIGHTS + m]
+    for m in range(PANEL_COLUMNS):
+        x, y, z = others[m], others[PANEL_COLUMNS + m], others[2 * PANEL_COLUMNS + m]
         three[m] -= a * x + b * y + c * z
-        three[RIGHTS + m] -= d * x + e * y + f * z
-        three[2 * RIGHTS + m] -= g * x + h * y + i * z
+        three[PANEL_COLUMNS + m] -= d * x + e * y + f * z
+        three[2 * PANEL_COLUMNS + m] -= g * x + h * y + i * z
 
 
 def dense_solution(matrix: FloatArray, right: FloatArray) -> FloatArray | None:

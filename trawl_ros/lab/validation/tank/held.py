@@ -10,7 +10,7 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.validation.tank.states import BRIDLE, SHACKLE, SWEEP, TRUNCATED, FlumeState
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.model.net.wake import VISCOSITY
+from trawl_ros.model.net.wake import KINEMATIC_VISCOSITY_M2_S
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 
@@ -108,7 +108,7 @@ class HeldNet:
 
 def in_the_tank(model: GearModel) -> GearModel:
     """Return a gear whose netting has the drag of the tank's small twine and slow water."""
-    factor = np.sqrt(TANK_VISCOSITY * MODEL_SCALE**1.5 / VISCOSITY)
+    factor = np.sqrt(TANK_VISCOSITY * MODEL_SCALE**1.5 / KINEMATIC_VISCOSITY_M2_S)
     bars = model.bars
     return replace(
         model,
