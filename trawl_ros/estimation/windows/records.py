@@ -99,7 +99,7 @@ class WindowOptions:
     heading_tolerance: float = 0.06
     drift_fraction: float = 0.005
     significance: float = 0.001
-    slow_s: float = 600.0
+    slow_s: float = 300.0
     outlier_limit: float = 6.0
     outlier_fraction: float = 0.2
     frozen_count: int = 10
