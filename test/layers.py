@@ -40,7 +40,7 @@ def floors_table() -> str:
         for number, row in zip(range(len(floors()), 0, -1), floors())
         for name in row
     ]
-    return '\n'.join(['| floor | folder | what is in it |', '|---|---|---|', *rows])
+    return '\n'.join(['| layer | folder | what is in it |', '|---|---|---|', *rows])
 
 
 def rooms_table() -> str:
