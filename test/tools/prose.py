@@ -14,20 +14,17 @@ LONGEST_SENTENCE_WORDS = 25
 
 INSTEAD = {
     'anew': 'again',
-    'beside': 'compared with, next to, or and',
-    'besides': 'also',
-    'by script': 'name the command',
-    'told': 'reported, said or given',
-    'tells': 'reports, shows or says',
-    'comes to rest': 'converges, or reaches a steady state',
-    'come to rest': 'converge, or reach a steady state',
-    'earns its place': 'is used',
-    'looked for': 'searched',
+    'besides?': 'next to, together with, compared with, or also',
+    'by script': 'the command that prints it',
+    'comes? to rest': 'converge, or reach a steady state',
+    'earns? (its|their) place': 'is used, or leave it out',
     'found and mended': 'fixed',
+    'not to be had': 'not available',
+    'tells(?! apart)': 'report, show or say',
+    'told(?! apart)': 'reported, said or given',
 }
-"""Words to avoid, and what to write in their place."""
+"""Patterns of words to avoid, and what to write in their place."""
 
-AVOIDED = re.compile(rf'\b({"|".join(sorted(INSTEAD, key=len, reverse=True))})\b', re.IGNORECASE)
 SENTENCE_END = re.compile(r'(?<=[.!?])[)"”*]*\s+(?=[A-Z(“"*§])|[:;]\s')
 WORD = re.compile(r'[^\W\d_]{2}')
 """Symbols and numbers are no words: equations stand in sentences."""
@@ -94,8 +91,13 @@ def ends_block(token: MarkdownToken) -> bool:
 
 def complaints(text: str) -> list[str]:
     """List what is wrong with a block of text."""
-    found = [f'"{word}": write {INSTEAD[word.lower()]}' for word in AVOIDED.findall(text)]
-    for sentence in SENTENCE_END.split(' '.join(text.split())):
+    text = ' '.join(text.split())
+    found = [
+        f'"{match[0]}": write {advice}'
+        for pattern, advice in INSTEAD.items()
+        for match in re.finditer(rf'\b{pattern}\b', text, re.IGNORECASE)
+    ]
+    for sentence in SENTENCE_END.split(text):
         words = [word for word in sentence.split() if WORD.search(word)]
         if len(words) > LONGEST_SENTENCE_WORDS:
             found.append(f'{len(words)} words: {" ".join(words[:6])} …')

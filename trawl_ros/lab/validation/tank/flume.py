@@ -208,8 +208,8 @@ def further_table(every: Sequence[Compared]) -> TextTable:
 
 METHOD = (
     f'Steady states of the survey bottom trawl {TRAWL} in a flume tank, as full-scale figures, '
-    f'compared with `{GEAR}`. The net is held at its pulling points, as far apart and as high above '
-    'the floor as in the tank; both follow from the spread of doors and the bridle angle in the '
+    f'compared with `{GEAR}`. The net is held at its pulling points, as far apart and as high '
+    'above the floor as in the tank; both follow from spread of doors and bridle angle in the '
     'report of the test. Mesh counts and twines were not published and are assumed; nothing is '
     f'tuned. Trial {", ".join(TUNED)}, from which twine was once set, does not count. '
     'In no state is the footrope known to be off the ground. So the floor carries legs, lower '
