@@ -26,6 +26,13 @@ UV = index="$${PIP_INDEX_URL:-$$($(BIN)/python -m pip config get global.index-ur
     if [ -n "$$index" ]; then export UV_DEFAULT_INDEX="$$index"; fi; $(BIN)/uv
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
+# Pages that the prose rule passes over: reports that commands write, and those still to be shortened.
+PROSE_REPORTS := docs/benchmark.md docs/validation/* \
+    $(addprefix docs/studies/,$(addsuffix .md,chaos discrepancy fuzz identification instruments motion \
+    onset robustness soak))
+PROSE_LATER := README.md docs/diagnosis.md docs/guides/ros2.md docs/identification/* docs/studies/history.md
+PROSE := $(PROSE_REPORTS) $(PROSE_LATER)
+
 # Tests of what needs no steady state.
 QUICK := $(addprefix test/,bags config effects gear instruments launch messages model lab/reference_codes \
     core/test_schema.py core/test_resources.py test_layers.py)
@@ -55,11 +62,11 @@ help:
 	@echo 'make endurance  the long tests at full size, hours: TESTS=soak'
 	@echo 'make test-view  the tests of the viewer, which is installed before (170 MB)'
 	@echo 'make fuzz       give all readers hostile input for MINUTES: docs/studies/fuzz.json'
-	@echo 'make lint       style, types and layers only'
+	@echo 'make lint       style, types, layers and prose only'
 	@echo 'make coverage   the tests of make test, and how much of the package they run'
 	@echo 'make docs       build the site of guides and reference: $(SITE)/'
 	@echo 'make promises   run every command of the documents and write docs/promises.md'
-	@echo 'make lock       choose the newest allowed versions anew and write requirements.lock'
+	@echo 'make lock       choose the newest allowed versions and write requirements.lock'
 	@echo 'make clean      remove .venv, out/ and what builds and tools leave behind'
 
 demo: $(VENV)/ready
@@ -113,6 +120,7 @@ lint: $(VENV)/ready
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports --no-cache > $(VENV)/layers.log || { cat $(VENV)/layers.log; exit 1; }
+	@$(BIN)/pymarkdown scan --recurse $(patsubst %,--exclude '%',$(PROSE)) docs *.md
 
 lock: $(VENV)/ready
 	@$(UV) pip compile --quiet --upgrade --generate-hashes --universal --python-version 3.10 \

@@ -88,6 +88,7 @@ TEST = [
     'import-linter>=2.6,<3',
     'mypy>=1.13,<3',
     'nox>=2024.10.9,<2027',
+    'pymarkdownlnt>=0.9.35,<0.10',
     'pytest>=7.4,<10',
     'pytest-cov>=6,<8',
     'pytest-timeout>=2.3,<3',

@@ -1,4 +1,4 @@
-"""Tables of docs/design.md, drawn from the contract in pyproject.toml and from the packages."""
+"""Table of docs/design.md, drawn from the contract in pyproject.toml and from the packages."""
 
 import ast
 import re
@@ -21,7 +21,7 @@ def contracts() -> dict[str, dict[str, object]]:
 
 
 def floors() -> list[list[str]]:
-    """Folders of each floor, the highest first; those to come stay out."""
+    """Folders of each layer, the highest first."""
     rows = [re.findall(r'\w+', row) for row in contracts()['layers']['layers']]
     rows = [[name for name in row if (PACKAGE / name).is_dir()] for row in rows]
     return [row for row in rows if row]
@@ -34,36 +34,24 @@ def sentence(folder: Path) -> str:
 
 
 def floors_table() -> str:
-    """Floors with their folders and what is in them."""
+    """Layers with their folders and what is in them."""
     rows = [
         f'| {number} | `{name}/` | {sentence(PACKAGE / name)} |'
         for number, row in zip(range(len(floors()), 0, -1), floors())
         for name in row
     ]
-    return '\n'.join(['| floor | folder | what is in it |', '|---|---|---|', *rows])
-
-
-def rooms_table() -> str:
-    """Folders inside folders and what is in them."""
-    rows = [
-        f'| `{folder.relative_to(PACKAGE).as_posix()}/` | {sentence(folder)} |'
-        for folder in sorted(path.parent for path in PACKAGE.rglob('__init__.py'))
-        if len(folder.relative_to(PACKAGE).parts) > 1
-    ]
-    return '\n'.join(['| folder | what is in it |', '|---|---|', *rows])
+    return '\n'.join(['| layer | folder | what is in it |', '|---|---|---|', *rows])
 
 
 def drawn(text: str) -> str:
-    """The document with both tables as they should be."""
-    for name, table in (('floors', floors_table()), ('rooms', rooms_table())):
-        head, foot = f'<!-- {name} -->', f'<!-- /{name} -->'
-        before, _, rest = text.partition(head)
-        text = f'{before}{head}\n{table}\n{foot}{rest.partition(foot)[2]}'
-    return text
+    """The document with its table as it should be."""
+    before, _, rest = text.partition('<!-- floors -->')
+    _, foot, after = rest.partition('<!-- /floors -->')
+    return f'{before}<!-- floors -->\n{floors_table()}\n{foot}{after}'
 
 
 def write() -> None:
-    """Draw the tables anew."""
+    """Draw the table again."""
     DESIGN.write_text(drawn(DESIGN.read_text(encoding='utf-8')), encoding='utf-8')
 
 

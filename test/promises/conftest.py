@@ -18,12 +18,11 @@ DOCUMENTS = [
 HEAD = f"""\
 # Commands of these documents
 
-Made by `make promises`, which runs every command and block of code of the README and of these
-documents as it stands there, on the default gear. `make test` runs those that, with all that they
-need of others, take up to {SLOW_S:g} s; `make test-slow` those up to {LONG_S:g} s; the others,
-whole reports among them, run with `make promises` alone. Where words stand instead of a time, the
-command is not run, or was not measured yet, which counts as long. Wall-clock times, here of two
-cores that had other work beside.
+`make promises` runs every command and code block of the README and of these documents, on the
+default gear, and writes this table. `make test` runs those that take up to {SLOW_S:g} s, with
+all that they need of others. `make test-slow` runs those up to {LONG_S:g} s, and `make
+promises` the rest. Words instead of a time say why a command is not run, or that it was not
+measured yet, which counts as long. Times are wall-clock times on two cores with other work.
 
 | command | where | s |
 |---|---|---|

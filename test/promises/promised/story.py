@@ -52,7 +52,7 @@ ENDS = {
     'trawl bag check cut.mcap': 3,
     'trawl bag repair cut.mcap': 3,
     'trawl diagnose': 10,
-    'trawl gear state kaifuha': 1,
+    'trawl gear state kaifuha --warp 200': 1,
     'trawl trim broken.yaml': 1,
     'trawl trim mine.yaml --spread 250': 1,
     'bash secured.sh winch_node': 1,

@@ -1,1 +1,1 @@
-"""Estimation and diagnosis in threads beside a node, and their statuses."""
+"""Estimation and diagnosis in threads next to a node, and their statuses."""

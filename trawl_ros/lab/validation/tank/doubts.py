@@ -207,9 +207,9 @@ def doubts_table(every: Sequence[Doubted], states: Sequence[FlumeState]) -> Text
                 )
             )
     return TextTable(
-        'Assumed numbers, each changed alone, with a net cut half as finely: '
+        'Assumed numbers, each changed alone, with a net half as fine: '
         f'trial {SHOWN}, and the exponent of tension from trial {SLOW} to it. The last columns '
-        'have the factors on the number, of those tried, with which the height comes within '
+        'give the factors on the number, of those tried, with which the height comes within '
         f'{100 * POINT_TOLERANCE_SHARE:g} % of the tank and the exponent within 0.1.',
         (
             'number', 'factor', 'spread (m)', 'height (m)', 'tension (kN)', 'exponent',

@@ -200,7 +200,7 @@ def further_table(every: Sequence[Compared]) -> TextTable:
             (
                 'least that the floor carries of the footrope',
                 f'{floor:.0f} N',
-                'Where it is negative the floor would have to pull.',
+                'A negative value means that the floor would have to pull.',
             ),
         ),
     )
@@ -208,18 +208,16 @@ def further_table(every: Sequence[Compared]) -> TextTable:
 
 METHOD = (
     f'Steady states of the survey bottom trawl {TRAWL} in a flume tank, as full-scale figures, '
-    f'compared with `{GEAR}`, which is held by its pulling points as far apart and as high above '
-    'the floor as they were. The legs of the doors were not in the tank, as the report of the test '
-    'says; it worked the spread of doors out from the bridle angle, and from both the pulling '
-    'points are found again. Counts of its meshes and its twines were published nowhere and are '
-    f'assumed; nothing is tuned. Trial {", ".join(TUNED)}, by which twine was once set, does not '
-    'count. '
-    'In no state at hand is the footrope known to be off the ground: the floor carries legs and '
-    'lower bridles, and so much of the footrope that its middle lies on it, without friction. What '
-    'counts was chosen before anything was solved with the gear as it ships: states with standard '
-    'bridles, normal legs and an empty codend. '
-    f'The tank has a net 1:{MODEL_SCALE} in slow water, where thin twine has more drag, and the '
-    'more the slower it is (Choo and Casarella 1971). So has the model, but for knots and ropes.'
+    f'compared with `{GEAR}`. The net is held at its pulling points, as far apart and as high '
+    'above the floor as in the tank; both follow from spread of doors and bridle angle in the '
+    'report of the test. Mesh counts and twines were not published and are assumed; nothing is '
+    f'tuned. Trial {", ".join(TUNED)}, from which twine was once set, does not count. '
+    'In no state is the footrope known to be off the ground. So the floor carries legs, lower '
+    'bridles and part of the footrope, without friction, and its middle lies on the floor. '
+    'The states that count were chosen beforehand: standard bridles, normal legs and an empty '
+    'codend. '
+    f'The net in the tank has a scale of 1:{MODEL_SCALE}. Thin twine has more drag in slow water '
+    '(Choo and Casarella 1971), in the tank and in the model, except for knots and ropes.'
 )
 
 
@@ -300,7 +298,7 @@ def run(quick: bool) -> Findings:
     """
     if not TABLE.is_file():
         why = (
-            f'{TABLE.name}: not found in shared/data beside the checkout, so nothing was compared.'
+            f'{TABLE.name}: not found in shared/data next to the checkout, so nothing was compared.'
         )
         return Findings((), tables=(TextTable('Not run', ('why',), ((why,),)),), text=why)
     gear, states = load_gear(GEAR), read_states(TABLE)
