@@ -175,7 +175,9 @@ def compare_bags(
         sensors=sensors,
         states=states,
         courses=(ComparedCourse(_hours(read[0]), read[0].course.values, moved),),
-        verdict=verdict_on(sensors, summary, f'{names[1]} has', units),
+        verdict=verdict_on(
+            sensors, summary, f'{names[1]} has', units, 'states' if by == 'state' else 'stretches'
+        ),
         notes=(),
     )
     return _written(result, out, units)

@@ -8,11 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from trawl_ros.comparison.comparison import Comparison
+from trawl_ros.comparison.comparison import ComparedCourse, Comparison
 from trawl_ros.comparison.summary import ComparedSensor
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.display_units import DisplayUnits, quantity_of
 from trawl_ros.estimation.fit.error_terms import group_of
+from trawl_ros.records.channels import CHANNELS
 from trawl_ros.report.pictures import Drawing
 from trawl_ros.report.style import FAINT, MEASURED, PORT, STARBOARD, quiet
 
@@ -25,8 +26,14 @@ STYLES = {
 
 REFERENCE = '#222222'
 
-SHIFT = {'port': -0.25, 'starboard': 0.25, 'middle': 0.0}
-"""Shift of a side's points along the axis, in widths of a marker, so that none hides another."""
+SHIFT = {'port': -0.01, 'starboard': 0.01, 'middle': 0.0}
+"""Shift of a side's points along an axis, a part of its range, so that none hides another."""
+
+WORDS = {
+    'length': 'warp length', 'tension': 'warp tension', 'pitch': 'door pitch', 'roll': 'door roll',
+    'divergence': 'warp divergence', 'declination': 'warp declination',
+}  # fmt: skip
+"""Names of quantities whose channels say only the side."""
 
 MINUTES = {'port': (0, 2), 'starboard': (1, 2), 'middle': (0, 1)}
 """First minute of a course that is drawn, and every how many: one side lies between the other."""
@@ -97,14 +104,14 @@ def _over_figure(comparison: Comparison, units: DisplayUnits) -> Figure:
         for sensor in sensors:
             name = sensor.channel
             own = [state.sensors[name] for state in comparison.states if name in state.sensors]
-            values = np.array([(c.reference, c.measured, c.std) for c in own]).T / size
-            _points(axes, name, *values)
+            at, values, std = np.array([(c.reference, c.measured, c.std) for c in own]).T / size
+            _points(axes, name, at, values, std)
         low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
         ends = [min(low), max(high)]
         axes.plot(ends, ends, color=FAINT, lw=1.0, zorder=0)
         axes.set_xlim(*ends)
         axes.set_ylim(*ends)
-        axes.set_title(group.replace('_', ' '), fontsize='medium')
+        axes.set_title(_words(group), fontsize='medium')
         axes.set_xlabel(f'{comparison.names[1]} / {symbol}')
         axes.set_ylabel(f'{comparison.names[0]} / {symbol}')
         quiet(axes)
@@ -134,15 +141,12 @@ def _difference_figure(comparison: Comparison, units: DisplayUnits) -> Figure:
                 ]
                 off = np.array([one.difference for one in own]) / scale
                 std = np.array([one.std for one in own]) / scale
-                reach = float(np.ptp(at)) or 1.0
-                moved = at / size + 0.012 * SHIFT[side_of(sensor.channel)] * 2.0 * reach / size
-                _points(axes, sensor.channel, moved, off, std)
-            axes.axhspan(
-                -2 * float(np.median(std)), 2 * float(np.median(std)), color='#eef1f3', zorder=0
-            )
+                _points(axes, sensor.channel, at / size, off, std)
+            two = 2.0 * float(np.median(std))
+            axes.axhspan(-two, two, color='#eef1f3', zorder=0)
             axes.axhline(0.0, color=FAINT, lw=0.9, zorder=1)
             quiet(axes)
-        row[0].set_ylabel(f'{group.replace("_", " ")}\n{"°" if angle else "%"}')
+        row[0].set_ylabel(f'{_words(group)}\n{"°" if angle else "%"}')
     for axes, (axis, _) in zip(panels[-1], of_axes, strict=True):
         unit = 'h' if axis == 'time' else units.symbol(axis)
         axes.set_xlabel(f'{axis} / {unit}')
@@ -158,9 +162,8 @@ def _course_figure(comparison: Comparison, number: int, units: DisplayUnits) -> 
             groups.setdefault(group_of(name), []).append(name)
     figure = Figure(figsize=(11.0, 1.9 * len(groups) + 0.8), layout='constrained')
     panels = figure.subplots(max(1, len(groups)), 1, sharex=True, squeeze=False)[:, 0]
-    kinds = {sensor.channel: sensor.unit for sensor in comparison.sensors}
     for axes, (group, names) in zip(panels, groups.items(), strict=False):
-        quantity = quantity_of(group, kinds.get(names[0], 'm'))
+        quantity = quantity_of(group, CHANNELS[names[0]].unit)
         size, symbol = units.size(quantity), units.symbol(quantity)
         for name in names:
             style = STYLES[side_of(name)]
@@ -171,11 +174,8 @@ def _course_figure(comparison: Comparison, number: int, units: DisplayUnits) -> 
             )  # fmt: skip
             reference = course.reference[name] / size
             axes.plot(course.hours, reference, ls=style['ls'], lw=1.6, color=REFERENCE)
-        shown = np.concatenate([course.reference[name] for name in names]) / size
-        shown = shown[np.isfinite(shown)]
-        reach = 0.35 * (float(np.ptp(shown)) or abs(float(shown[0])) or 1.0)
-        axes.set_ylim(float(shown.min()) - reach, float(shown.max()) + reach)
-        axes.set_ylabel(f'{group.replace("_", " ")}\n{symbol}')
+        axes.set_ylim(*_limits(course, names) / size)
+        axes.set_ylabel(f'{_words(group)}\n{symbol}')
         if 'depth' in group:
             axes.invert_yaxis()
         quiet(axes)
@@ -184,10 +184,24 @@ def _course_figure(comparison: Comparison, number: int, units: DisplayUnits) -> 
     return figure
 
 
+def _limits(course: ComparedCourse, names: Sequence[str]) -> FloatArray:
+    """Return limits of an axis that show what is compared, without false echoes."""
+    pairs = [np.array([course.measured[name], course.reference[name]]) for name in names]
+    shown = np.concatenate([pair[:, np.isfinite(pair).all(axis=0)] for pair in pairs], axis=1)
+    low, high = np.percentile(shown, [1.0, 99.0]) if shown.size else (0.0, 1.0)
+    reach = 0.25 * ((high - low) or abs(low) or 1.0)
+    return np.array([low - reach, high + reach])
+
+
+def _words(group: str) -> str:
+    return WORDS.get(group, group.replace('_', ' '))
+
+
 def _points(axes: Axes, channel: str, at: FloatArray, values: FloatArray, std: FloatArray) -> None:
     style = STYLES[side_of(channel)]
+    shift = SHIFT[side_of(channel)] * float(np.ptp(at))
     axes.errorbar(
-        at, values, std, fmt=style['marker'], color=style['color'], mfc=style['mfc'],
+        at + shift, values, std, fmt=style['marker'], color=style['color'], mfc=style['mfc'],
         ms=5.0, mew=1.1, elinewidth=0.8, zorder=3,
     )  # fmt: skip
 

@@ -11,8 +11,8 @@ from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.core.time import SECOND
-from trawl_ros.estimation.from_gear import identification_for
 from trawl_ros.estimation.tows import FoundWindows
+from trawl_ros.estimation.windows.finder import SteadyWindowFinder
 from trawl_ros.estimation.windows.records import SteadyWindow, WindowOptions
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.water import build_water
@@ -87,8 +87,8 @@ def read_log(
     BagError
         If the bag cannot be read.
     """
-    identification = identification_for(gear, window_options=ALL_MINUTES)
-    finder, minutes = identification.finder, _Minutes(build_water(gear).depth)
+    depth = build_water(gear).depth
+    finder, minutes = SteadyWindowFinder(depth, ALL_MINUTES, required=INPUTS), _Minutes(depth)
     stream = SampleStream([path], namespace, topics=READ_TOPICS)
     decided = []
     for number, (_, sample) in enumerate(stream):
@@ -104,10 +104,23 @@ def read_log(
         arrived=finder.arrived,
         readings=finder.readings,
         rejections=finder.rejections,
-        why_not=None if windows else identification.why_not(),
+        why_not=None if windows else _why_not(finder),
         problems=tuple(stream.problems),
     )
     return ReadLog(found, minutes.course())
+
+
+def _why_not(finder: SteadyWindowFinder) -> str:
+    """Return the reason in a sentence why a log has no steady state."""
+    lacking = dict.fromkeys(CHANNELS[name].topic for name in INPUTS if not finder.readings[name])
+    if lacking:
+        return f'no usable readings on {", ".join(lacking)}, expected warp lengths and speed'
+    counts = ', '.join(f'{reason} {count}' for reason, count in finder.rejected.items())
+    return (
+        'no steady state: expected warp lengths, speed and heading held for up to '
+        f'{finder.settle_s:.0f} s and then for {ALL_MINUTES.window_s:g} s of steady readings '
+        f'(rejected: {counts or "none"})'
+    )
 
 
 class _Minutes:

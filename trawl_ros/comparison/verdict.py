@@ -97,6 +97,7 @@ def verdict_on(
     summary: Summary,
     than: str,
     units: DisplayUnits = METRIC,
+    states: str = 'states',
     options: VerdictOptions | None = None,
 ) -> Verdict:
     """Judge the differences of all sensors together.
@@ -113,6 +114,8 @@ def verdict_on(
         End of the comparison, such as ``the gear file says``.
     units
         Units of the ends of trends.
+    states
+        What is averaged over: states, or stretches of time.
     options
         Limits.
     """
@@ -143,7 +146,7 @@ def verdict_on(
         told = (
             f' Other door coefficients would explain this, except for {words}.' if words else told
         )
-    listed = _differences(sensors, than, units, options)
+    listed = _differences(sensors, than, states, units, options)
     return Verdict(f'{listed}{told}', False, step, suspects, p_values)
 
 
@@ -176,7 +179,11 @@ def _suspects(summary: Summary, covariance: FloatArray, options: VerdictOptions)
 
 
 def _differences(
-    sensors: Sequence[ComparedSensor], than: str, units: DisplayUnits, options: VerdictOptions
+    sensors: Sequence[ComparedSensor],
+    than: str,
+    states: str,
+    units: DisplayUnits,
+    options: VerdictOptions,
 ) -> str:
     """Name the quantities that differ, the most significant first."""
     parts: list[tuple[float, str, ComparedSensor]] = []
@@ -197,7 +204,7 @@ def _differences(
     if not parts:
         return f'Small differences of many sensors together are more than their errors, as {than}.'
     first = parts[0][2]
-    where = _where(first, units, options)
+    where = _where(first, states, units, options)
     lead = parts[0][1]
     others = '; '.join(phrase for _, phrase, _ in parts[1:])
     rest = f'; {others}' if others else ''
@@ -217,7 +224,9 @@ def _phrase(group: Sequence[ComparedSensor]) -> str:
     return f'{noun} {size} {lower if relative < 0.0 else higher}'
 
 
-def _where(sensor: ComparedSensor, units: DisplayUnits, options: VerdictOptions) -> str:
+def _where(
+    sensor: ComparedSensor, states: str, units: DisplayUnits, options: VerdictOptions
+) -> str:
     """Return where a difference is found: everywhere, or along an axis."""
     trend = max(sensor.trends, key=lambda trend: abs(trend.scaled), default=None)
     if trend is not None and abs(trend.scaled) >= options.differs:
@@ -226,8 +235,8 @@ def _where(sensor: ComparedSensor, units: DisplayUnits, options: VerdictOptions)
         return f'from {at[0]} {low} to {at[1]} {high}'
     same = np.sign(sensor.fractions) == np.sign(sensor.relative)
     if same.all():
-        return f'in all {sensor.states} states' if sensor.states > 1 else 'in the only state'
-    return f'in {int(same.sum())} of {sensor.states} states'
+        return f'in all {sensor.states} {states}' if sensor.states > 1 else 'in the only one'
+    return f'in {int(same.sum())} of {sensor.states} {states}'
 
 
 def _place(trend: Trend, end: float, units: DisplayUnits) -> str:

@@ -26,7 +26,10 @@ ALIASES: Mapping[str, str] = {
 SYMBOLS: Mapping[str, str] = {'tf': 't', 'fathom': 'fm', 'deg': '°'}
 """Symbols that differ from the name in `UNITS`."""
 
-IN_TEXT = re.compile(r'(?<![\w.])(\d+(?:\.\d+)?)( ?)(m/s|kN|m)(?![\w/²³])')
+IN_TEXT = re.compile(
+    r'(?<![\w.])((?P<of>spread|depth)(?: of)? )?(?P<number>\d+(?:\.\d+)?) '
+    r'(?P<unit>m/s|kN|m)(?![\w/²³])'
+)
 """A number with a unit of a sentence."""
 
 
@@ -55,6 +58,12 @@ class DisplayUnits:
         space = '' if quantity == 'angle' else ' '
         return f'{self.number(value, quantity, digits)}{space}{self.symbol(quantity)}'
 
+    def weight(self, value: float) -> str:
+        """Format a weight (N), which is small: in N where tensions are in kN."""
+        if self._unit('tension') == 'kN':
+            return f'{value:.0f} N'
+        return self.shown(value, 'tension', 2)
+
     def number(self, value: float, quantity: str, digits: int = 1) -> str:
         """Format a value (SI) without its unit; large units get one or two more decimals."""
         more = {'tf': 1, 'fathom': 0, 'm/s': 1, 'kn': 1}.get(self._unit(quantity), 0)
@@ -62,16 +71,18 @@ class DisplayUnits:
         return f'{value / self.size(quantity):.{max(0, digits + more - fewer)}f}'
 
     def sentence(self, text: str) -> str:
-        """Convert the metres, m/s and kN of a sentence; lengths take the unit of warps."""
+        """Convert the m, m/s and kN of a sentence; other lengths than named count as warps."""
         return IN_TEXT.sub(self._convert, text)
 
     def _convert(self, found: re.Match[str]) -> str:
-        quantity = {'m/s': 'speed', 'kN': 'tension', 'm': 'warp'}[found[3]]
-        if self._unit(quantity) == found[3]:
+        unit, number = found['unit'], found['number']
+        length = {'spread': 'width', 'depth': 'depth', None: 'warp'}[found['of']]
+        quantity = {'m/s': 'speed', 'kN': 'tension', 'm': length}[unit]
+        if self._unit(quantity) == unit:
             return found[0]
-        decimals = len(found[1].partition('.')[2])
-        value = float(found[1]) * UNITS[found[3]].size
-        return self.shown(value, quantity, decimals if quantity == 'warp' else max(1, decimals))
+        decimals = len(number.partition('.')[2])
+        shown = self.shown(float(number) * UNITS[unit].size, quantity, min(decimals, 1))
+        return f'{found[1] or ""}{shown}'
 
     def _unit(self, quantity: str) -> str:
         return 'deg' if quantity == 'angle' else self.units[quantity]
