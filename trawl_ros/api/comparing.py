@@ -155,14 +155,15 @@ def compare_bags(
         empty_folder(Path(out), force=force)
     record = gear if isinstance(gear, GearRecord) else load_gear(gear)
     read = [read_log(Path(path), record, namespace, on_progress) for path in (first, second)]
+    one, other = read
     _note(read, on_note)
     options = alignment or Alignment()
     if by == 'state':
-        rows = by_state(*read, options)
-        moved, _ = on_minutes_of(read[0].course, read[1].course, options)
+        rows = by_state(one, other, options)
+        moved, _ = on_minutes_of(one.course, other.course, options)
     else:
-        rows, moved = by_time(read[0].course, read[1].course, options)
-    names = read[0].found.name, read[1].found.name
+        rows, moved = by_time(one.course, other.course, options)
+    names = one.found.name, other.found.name
     if names[0] == names[1]:
         names = str(first), str(second)
     states = states_of(rows)
@@ -174,7 +175,7 @@ def compare_bags(
         names=names,
         sensors=sensors,
         states=states,
-        courses=(ComparedCourse(_hours(read[0]), read[0].course.values, moved),),
+        courses=(ComparedCourse(_hours(one), one.course.values, moved),),
         verdict=verdict_on(
             sensors, summary, f'{names[1]} has', units, 'states' if by == 'state' else 'stretches'
         ),
@@ -205,7 +206,7 @@ def _note(logs: Sequence[ReadLog], on_note: Callable[[str], None]) -> None:
 
 
 def _hours(log: ReadLog) -> FloatArray:
-    return (np.arange(log.course.minutes) + 0.5) / 60.0
+    return np.arange(0.5, log.course.minutes) / 60.0
 
 
 def _written(result: Comparison, out: str | Path | None, units: DisplayUnits) -> Comparison:

@@ -69,7 +69,7 @@ def print_comparison(found: 'Comparison', units: DisplayUnits, out: Path | None)
     """Print the table of sensors, the verdict and the next step."""
     from trawl_ros.comparison.page import PAGE, sensor_row
 
-    heads = (*found.names, 'difference', '%', 'std', 'states')
+    heads = (*found.names, 'difference', '%', 'in std', 'states')
     table = plain_table('sensor', *heads, right=heads)
     for row in (sensor_row(sensor, units) for sensor in found.sensors):
         keys = ('name', 'measured', 'reference', 'difference', 'percent', 'scaled', 'states')

@@ -20,6 +20,7 @@ from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.channels import INPUTS, MEASURED
 from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.slow_mode import slow_mode
 
 DEPTHS = 'net_depth', 'port_door_depth', 'starboard_door_depth'
@@ -71,9 +72,11 @@ def against_gear(logs: Sequence[ReadLog], gear: GearRecord, on_progress: OnProgr
     windows, _ = numbered([log.found for log in logs])
     log_of = np.repeat(np.arange(len(logs)), [len(log.found.windows) for log in logs])
     hours = np.array([hour for log in logs for hour in hours_of(log)])
-    solved, decays, notes = _solved(windows, gear, on_progress)
-    if not solved:
+    states, notes = _solved(windows, gear, on_progress)
+    if not states:
         raise NoSteadyState('; '.join(notes))
+    solved = [_moved(states[one.state].linear, one) for one in windows if one.state in states]
+    decays = [states[linear.window.state].decay_s for linear in solved]
     used = np.array([linear.window.index for linear in solved])
     _, state = np.unique([linear.window.state for linear in solved], return_inverse=True)
     rows = Rows(
@@ -91,50 +94,49 @@ def against_gear(logs: Sequence[ReadLog], gear: GearRecord, on_progress: OnProgr
         else np.array([in_all_channels(one, one.by_coefficients) for one in solved])
         * board_prior(gear).std,
     )
-    courses = tuple(_equilibria(log.course, solved, NearState()) for log in logs)
+    places = [one.linear for one in states.values()]
+    courses = tuple(_equilibria(log.course, places, NearState()) for log in logs)
     return AgainstGear(rows, courses, tuple(notes))
+
+
+@dataclass(frozen=True)
+class SolvedState:
+    """Linearised equilibrium of a state with all channels, and the decay of its slowest motion."""
+
+    linear: Linearised
+    decay_s: float
 
 
 def _solved(
     windows: Sequence[SteadyWindow], gear: GearRecord, on_progress: OnProgress
-) -> tuple[list[Linearised], list[float], list[str]]:
-    """Solve the first window of each state, and those that follow to first order from it.
-
-    Returns the solved windows, the time (s) in which the slowest motion of each decays, and notes.
-    """
+) -> tuple[dict[int, SolvedState], list[str]]:
+    """Solve the first window of each state; return the states, and notes on what is wrong."""
     predictor = predictor_for(gear)
     coefficients = predictor.model.coefficients
     gate = WindowGate(Screening(predictor, board_prior(gear), OBSERVABLES))
-    solved: list[Linearised] = []
-    decays: list[float] = []
+    states: dict[int, SolvedState] = {}
     notes: list[str] = []
-    without: set[int] = set()
+    near: Equilibrium | None = None
+    first: dict[int, SteadyWindow] = {}
     for window in windows:
-        if window.state in without:
-            continue
-        near = solved[-1] if solved else None
-        if (
-            near is not None
-            and near.window.state == window.state
-            and near.channels == tuple(name for name in MEASURED if name in window.means)
-        ):
-            solved.append(_moved(near, window))
-            decays.append(decays[-1])
-            continue
+        first.setdefault(window.state, window)
+    for window in first.values():
         on_progress(WorkProgress('solving', window.index, len(windows), 'steady minutes'))
         judged = gate.judge(window, coefficients)
         if judged.rejected is not None:
             notes.append(f'{judged.rejected.reason}: {judged.rejected.detail}')
-        starts = (None,) if near is None else (near.state, None)
+        # A window that lacks a channel gets it too: others of its state may have it.
+        whole = replace(window, means={**dict.fromkeys(MEASURED, 0.0), **window.means})
+        starts = (None,) if near is None else (near, None)
         try:
-            solved.append(linearise(predictor, OBSERVABLES, window, coefficients, starts))
+            linear = linearise(predictor, OBSERVABLES, whole, coefficients, starts)
         except NoSteadyState as error:
-            without.add(window.state)
             notes.append(f'The gear file has no equilibrium for one steady state: {error}')
-        else:
-            there = predictor.situated(window).gear(coefficients, solved[-1].inputs)
-            decays.append(slow_mode(there, solved[-1].state).decay_s)
-    return solved, decays, list(dict.fromkeys(notes))
+            continue
+        near = linear.state
+        there = predictor.situated(window).gear(coefficients, linear.inputs)
+        states[window.state] = SolvedState(linear, slow_mode(there, near).decay_s)
+    return states, list(dict.fromkeys(notes))
 
 
 def _errors(
@@ -168,18 +170,27 @@ def _unsettled(linear: Linearised, decay_s: float, course: Course) -> float:
 
 
 def _moved(near: Linearised, window: SteadyWindow) -> Linearised:
-    """Return a linearisation at another window of the same state."""
+    """Return the linearisation at a window of the same state, with its own channels."""
+    rows = [row for row, name in enumerate(near.channels) if name in window.means]
+    channels = tuple(near.channels[row] for row in rows)
     change = near.by_inputs @ (measured_inputs(window) - measured_inputs(near.window))
-    measured = np.array([window.means[name] for name in near.channels])
-    return replace(near, window=window, measured=measured, values=near.values + change)
+    return replace(
+        near,
+        window=window,
+        channels=channels,
+        measured=np.array([window.means[name] for name in channels]),
+        values=(near.values + change)[rows],
+        by_coefficients=near.by_coefficients[rows],
+        by_inputs=near.by_inputs[rows],
+        by_net=near.by_net[rows],
+        slow=near.slow[rows],
+    )
 
 
 def _equilibria(
-    course: Course, solved: Sequence[Linearised], near: NearState
+    course: Course, places: Sequence[Linearised], near: NearState
 ) -> dict[str, FloatArray]:
     """Return equilibria (n,) by channel over a course, NaN where no solved state is near."""
-    states = {linear.window.state: linear for linear in solved}
-    places = list(states.values())
     at = np.array([measured_inputs(linear.window) for linear in places])
     missing = np.full(course.minutes, np.nan)
     inputs = np.stack([course.values.get(name, missing) for name in INPUTS], axis=1)

@@ -1,13 +1,14 @@
 """Rows and course of one log against another, aligned by state or in time."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from trawl_ros.comparison.reading import Course, ReadLog, hours_of
 from trawl_ros.comparison.rows import ErrorBudget, Rows
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.fit.linearised import measured_inputs
@@ -140,9 +141,14 @@ def _states(windows: Sequence[SteadyWindow]) -> list[list[SteadyWindow]]:
 
 def _apart(one: list[SteadyWindow], other: list[SteadyWindow], options: Alignment) -> float:
     """Return the distance of two states; they may be compared up to 1."""
-    here, there = (np.mean([measured_inputs(w) for w in side], axis=0) for side in (one, other))
-    relative = np.abs(here / there - 1.0)[:2] / options.warp
-    return float(max(*relative, abs(here[2] - there[2]) / options.speed))
+    here, there = _inputs(one), _inputs(other)
+    port, starboard = np.abs(here / there - 1.0)[:2] / options.warp
+    return max(float(port), float(starboard), abs(float(here[2] - there[2])) / options.speed)
+
+
+def _inputs(windows: list[SteadyWindow]) -> FloatArray:
+    inputs: FloatArray = np.array([measured_inputs(window) for window in windows]).mean(axis=0)
+    return inputs
 
 
 def _means(windows: list[SteadyWindow]) -> FloatArray:
@@ -157,16 +163,16 @@ def _means(windows: list[SteadyWindow]) -> FloatArray:
 
 def _noise(windows: list[SteadyWindow]) -> FloatArray:
     """Return the std (k,) of these means, without calibration."""
-    found = []
+    found: list[float] = []
     for name in COMPARED:
         own = [w.own_noise(name) for w in windows if name in w.means]
         changing = [CHANNELS[name].state_std(w.bias[name], 0.3) for w in windows if name in w.bias]
-        noise = np.linalg.norm(own) / len(own) if own else 0.0
-        found.append(np.hypot(noise, max(changing, default=0.0)))
+        noise = float(np.linalg.norm(own)) / len(own) if own else 0.0
+        found.append(math.hypot(noise, max(changing, default=0.0)))
     return np.array(found)
 
 
-def _over(values: dict[str, FloatArray], here: slice, *, mean: bool = False) -> FloatArray:
+def _over(values: Mapping[str, FloatArray], here: Slice, *, mean: bool = False) -> FloatArray:
     """Return means (k,) over some minutes, or the std of these; NaN without a reading."""
     found = np.full(len(COMPARED), np.nan)
     for column, name in enumerate(COMPARED):
@@ -180,7 +186,7 @@ def _over(values: dict[str, FloatArray], here: slice, *, mean: bool = False) -> 
 def _rows(values: list[FloatArray], noise: list[FloatArray], hours: list[float]) -> Rows:
     """Build rows from values and noise (2, k) of each."""
     both = np.array(values)
-    present = np.isfinite(both).all(axis=1)
+    present: BoolArray = np.isfinite(both[:, 0]) & np.isfinite(both[:, 1])
     own = np.where(present, np.linalg.norm(np.nan_to_num(noise), axis=1), 0.0)
     filled = np.where(present[:, None], both, 0.0)
     # Each log has its own calibration, which stays through it.

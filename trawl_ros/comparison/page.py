@@ -63,8 +63,8 @@ def _cells(channel: str, one: Compared, units: DisplayUnits) -> dict[str, str | 
     return {
         'name': channel.replace('_', ' '),
         'side': side_of(channel),
-        'measured': units.shown(one.measured, quantity),
-        'reference': units.shown(one.reference, quantity),
+        'measured': units.shown(one.measured, quantity).replace('-', '−'),
+        'reference': units.shown(one.reference, quantity).replace('-', '−'),
         'difference': f'{sign}{units.shown(abs(one.difference), quantity)}',
         'percent': '' if unit == 'rad' else f'{100.0 * one.fraction:+.1f} %'.replace('-', '−'),
         'scaled': f'{one.scaled:+.1f}'.replace('-', '−'),

@@ -26,11 +26,14 @@ class VerdictOptions:
         p-value of χ² from which differences are explained.
     named
         Relative difference from which a quantity is named too, once there are some that count.
+    most
+        Number of quantities that are named.
     """
 
     differs: float = 3.0
     least_p: float = 0.001
     named: float = 0.02
+    most: int = 4
 
 
 @dataclass(frozen=True)
@@ -186,7 +189,7 @@ def _differences(
     options: VerdictOptions,
 ) -> str:
     """Name the quantities that differ, the most significant first."""
-    parts: list[tuple[float, str, ComparedSensor]] = []
+    parts: list[tuple[bool, float, str, str]] = []
     by_group: dict[str, list[ComparedSensor]] = {}
     for sensor in sensors:
         by_group.setdefault(group_of(sensor.channel), []).append(sensor)
@@ -197,39 +200,53 @@ def _differences(
         for group in [own] if alike else [[sensor] for sensor in own]:
             scaled = max(abs(sensor.mean.scaled) for sensor in group)
             trend = max((abs(t.scaled) for sensor in group for t in sensor.trends), default=0.0)
-            named = not group[0].is_angle and abs(group[0].relative) >= options.named
-            if max(scaled, trend) >= options.differs or named:
-                parts.append((max(scaled, trend), _phrase(group), group[0]))
-    parts.sort(key=lambda part: -part[0])
+            named = not group[0].is_angle and abs(_relative(group)) >= options.named
+            by_mean = scaled >= options.differs or named
+            where = _where(group[0], states, units, options)
+            if by_mean:
+                phrase = _phrase(group)
+                parts.append((True, scaled, phrase, f'{phrase} than {than}, {where}'))
+            elif trend >= options.differs:
+                phrase = f'{_noun(group)} differs {where}'
+                parts.append((False, trend, phrase, phrase))
+    parts.sort(key=lambda part: part[:2], reverse=True)
     if not parts:
-        return f'Small differences of many sensors together are more than their errors, as {than}.'
-    first = parts[0][2]
-    where = _where(first, states, units, options)
-    lead = parts[0][1]
-    others = '; '.join(phrase for _, phrase, _ in parts[1:])
-    rest = f'; {others}' if others else ''
-    return f'{lead[0].upper()}{lead[1:]} than {than}, {where}{rest}.'
+        return f'The log differs from what {than}: small differences of many sensors together.'
+    others = [phrase for _, _, phrase, _ in parts[1 : options.most]]
+    if len(parts) > options.most:
+        others.append(f'{len(parts) - options.most} more')
+    listed = '; '.join([parts[0][3], *others])
+    return f'{listed[0].upper()}{listed[1:]}.'
 
 
 def _phrase(group: Sequence[ComparedSensor]) -> str:
-    sensor = group[0]
-    noun, lower, higher = PHRASES.get(
-        group_of(sensor.channel), (_name(group_of(sensor.channel)), 'less', 'more')
-    )
-    side = '' if len(group) == 2 else sensor.channel.removesuffix(group_of(sensor.channel))
-    noun = f'{side.replace("_", " ")}{noun}'
-    relative = float(np.mean([one.relative for one in group]))
-    size = f'{abs(math.degrees(relative)):.1f}°' if sensor.is_angle else f'{abs(relative):.1%}'
+    _, lower, higher = PHRASES.get(group_of(group[0].channel), ('', 'less', 'more'))
+    relative = _relative(group)
+    size = f'{abs(math.degrees(relative)):.1f}°' if group[0].is_angle else f'{abs(relative):.1%}'
     size = size.replace('%', ' %')
-    return f'{noun} {size} {lower if relative < 0.0 else higher}'
+    return f'{_noun(group)} {size} {lower if relative < 0.0 else higher}'
+
+
+def _noun(group: Sequence[ComparedSensor]) -> str:
+    """Return the noun of a quantity, with its side if the other differs otherwise."""
+    channel, quantity = group[0].channel, group_of(group[0].channel)
+    noun = PHRASES[quantity][0] if quantity in PHRASES else _name(quantity)
+    side = '' if len(group) == 2 else channel.removesuffix(quantity)
+    return f'{_name(side)}{noun}'
+
+
+def _relative(group: Sequence[ComparedSensor]) -> float:
+    return float(np.mean([sensor.relative for sensor in group]))
 
 
 def _where(
     sensor: ComparedSensor, states: str, units: DisplayUnits, options: VerdictOptions
 ) -> str:
     """Return where a difference is found: everywhere, or along an axis."""
-    trend = max(sensor.trends, key=lambda trend: abs(trend.scaled), default=None)
-    if trend is not None and abs(trend.scaled) >= options.differs:
+    strong = [trend for trend in sensor.trends if abs(trend.scaled) >= options.differs]
+    # A tow often goes from short to long warps, so time is named only where nothing else is.
+    trend = max(strong, key=lambda one: (one.axis != 'time', abs(one.scaled)), default=None)
+    if trend is not None:
         at = [_size(value, sensor) for value in trend.at_ends]
         low, high = (_place(trend, end, units) for end in trend.ends)
         return f'from {at[0]} {low} to {at[1]} {high}'
