@@ -28,7 +28,7 @@ def test_one_command_reports_every_sensor_that_differs(
     done = CliRunner().invoke(trawl, words, catch_exceptions=False)
     assert done.exit_code == 0
     found = json.loads((out / 'comparison.json').read_text())
-    off = {name: sensor['fraction'] for name, sensor in found['sensors'].items()}
+    off = {sensor['channel']: sensor['mean']['fraction'] for sensor in found['sensors']}
     assert off['door_spread'] == pytest.approx(-0.06, abs=0.003)
     for side in ('port', 'starboard'):
         assert off[f'{side}_tension'] == pytest.approx(0.07, abs=0.003)

@@ -158,11 +158,11 @@ def compare_bags(
     one, other = read
     _note(read, on_note)
     options = alignment or Alignment()
+    moved = on_minutes_of(one.course, other.course, options)
     if by == 'state':
         rows = by_state(one, other, options)
-        moved, _ = on_minutes_of(one.course, other.course, options)
     else:
-        rows, moved = by_time(one.course, other.course, options)
+        rows = by_time(one.course, moved, options)
     names = one.found.name, other.found.name
     if names[0] == names[1]:
         names = str(first), str(second)
@@ -175,7 +175,7 @@ def compare_bags(
         names=names,
         sensors=sensors,
         states=states,
-        courses=(ComparedCourse(_hours(one), one.course.values, moved),),
+        courses=(ComparedCourse(_hours(one), one.course.values, moved.values),),
         verdict=verdict_on(
             sensors, summary, f'{names[1]} has', units, 'states' if by == 'state' else 'stretches'
         ),

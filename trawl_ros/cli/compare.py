@@ -67,13 +67,14 @@ def command(
 
 def print_comparison(found: 'Comparison', units: DisplayUnits, out: Path | None) -> None:
     """Print the table of sensors, the verdict and the next step."""
-    from trawl_ros.comparison.page import PAGE, sensor_row
+    from trawl_ros.comparison.page import PAGE, cells
 
     heads = (*found.names, 'difference', '%', 'in std', 'states')
     table = plain_table('sensor', *heads, right=heads)
-    for row in (sensor_row(sensor, units) for sensor in found.sensors):
-        keys = ('name', 'measured', 'reference', 'difference', 'percent', 'scaled', 'states')
-        table.add_row(*(str(row[key]) for key in keys))
+    for sensor in found.sensors:
+        row = cells(sensor.channel, sensor.mean, units)
+        keys = ('name', 'measured', 'reference', 'difference', 'percent', 'scaled')
+        table.add_row(*(str(row[key]) for key in keys), str(sensor.states))
     console = output_console()
     console.print(table)
     for note in found.notes:

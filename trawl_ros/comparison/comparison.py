@@ -3,6 +3,7 @@
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from trawl_ros.comparison.summary import ComparedSensor, ComparedState
 from trawl_ros.comparison.verdict import Verdict
@@ -57,6 +58,12 @@ class Comparison:
     courses: tuple[ComparedCourse, ...]
     verdict: Verdict
     notes: tuple[str, ...]
+
+    @property
+    def title(self) -> str:
+        """Heading: the logs and what they are compared with."""
+        names = [Path(one).name for one in (*self.logs, self.gear) if one]
+        return f'{", ".join(names[:-1])} and {names[-1]}'
 
     @property
     def next_step(self) -> str:

@@ -127,8 +127,6 @@ class Summary:
     ----------
     channels
         Channel of each of the q elements.
-    is_mean : (q,) bool array
-        True of means, False of trends.
     values, covariance : (q,) and (q, q) arrays
         Differences, and the covariance of their errors.
     by_coefficients : (q, 12) array or None
@@ -136,7 +134,6 @@ class Summary:
     """
 
     channels: tuple[str, ...]
-    is_mean: FloatArray
     values: FloatArray
     covariance: FloatArray
     by_coefficients: FloatArray | None
@@ -180,7 +177,7 @@ def sensors_of(
     rows: Rows, states: tuple[ComparedState, ...]
 ) -> tuple[tuple[ComparedSensor, ...], Summary]:
     """Summarise every channel over its states."""
-    sensors, names, weights, is_mean = [], [], [], []
+    sensors, names, weights = [], [], []
     for column, name in enumerate(rows.channels):
         by_state, own = rows.by_state(column)
         if not len(own):
@@ -209,14 +206,13 @@ def sensors_of(
         kept = [0, *(1 + i for i, axis in enumerate(axes) if axis != 'time')]
         weights.append(full[kept])
         names += [name] * len(kept)
-        is_mean += [line == 0 for line in kept]
     together = np.concatenate(weights)
     values = np.einsum('qnk,nk->q', together, rows.difference)
     by_coefficients = None
     if rows.by_coefficients is not None:
         by_coefficients = np.einsum('qnk,nkc->qc', together, rows.by_coefficients)
     covariance = rows.errors.covariance(together)
-    summary = Summary(tuple(names), np.array(is_mean), values, covariance, by_coefficients)
+    summary = Summary(tuple(names), values, covariance, by_coefficients)
     return tuple(sensors), summary
 
 
