@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Literal
@@ -11,6 +12,7 @@ import numpy as np
 from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.comparison.comparison import ComparedCourse, Comparison
 from trawl_ros.comparison.reading import ReadLog, read_log
+from trawl_ros.comparison.rows import Rows
 from trawl_ros.comparison.summary import sensors_of, states_of
 from trawl_ros.comparison.verdict import verdict_on
 from trawl_ros.core.arrays import FloatArray
@@ -93,19 +95,9 @@ def compare(
         ComparedCourse(_hours(log), log.course.values, equilibria)
         for log, equilibria in zip(read, found.courses, strict=True)
     )
-    states = states_of(found.rows)
-    sensors, summary = sensors_of(found.rows, states)
-    result = Comparison(
-        kind='gear',
-        logs=tuple(map(str, logs)),
-        gear=record.name if isinstance(gear, GearRecord) else str(gear),
-        names=('measured', 'predicted'),
-        sensors=sensors,
-        states=states,
-        courses=courses,
-        verdict=verdict_on(sensors, summary, 'the gear file says', units),
-        notes=found.notes,
-    )
+    result = _result(found.rows, 'the gear file says', units, courses)
+    name = record.name if isinstance(gear, GearRecord) else str(gear)
+    result = replace(result, logs=tuple(map(str, logs)), gear=name, notes=found.notes)
     return _written(result, out, units)
 
 
@@ -165,23 +157,26 @@ def compare_bags(
         rows = by_time(one.course, moved, options)
     names = one.found.name, other.found.name
     if names[0] == names[1]:
-        names = str(first), str(second)
+        names = '/'.join(Path(first).parts[-2:]), '/'.join(Path(second).parts[-2:])
+    course = ComparedCourse(_hours(one), one.course.values, moved.values)
+    words = 'states' if by == 'state' else 'stretches'
+    result = _result(rows, f'{names[1]} has', units, (course,), words)
+    result = replace(result, kind='bags', logs=(str(first), str(second)), names=names)
+    return _written(result, out, units)
+
+
+def _result(
+    rows: Rows,
+    than: str,
+    units: DisplayUnits,
+    courses: tuple[ComparedCourse, ...],
+    words: str = 'states',
+) -> Comparison:
+    """Summarise and judge rows."""
     states = states_of(rows)
     sensors, summary = sensors_of(rows, states)
-    result = Comparison(
-        kind='bags',
-        logs=(str(first), str(second)),
-        gear='',
-        names=names,
-        sensors=sensors,
-        states=states,
-        courses=(ComparedCourse(_hours(one), one.course.values, moved.values),),
-        verdict=verdict_on(
-            sensors, summary, f'{names[1]} has', units, 'states' if by == 'state' else 'stretches'
-        ),
-        notes=(),
-    )
-    return _written(result, out, units)
+    verdict = verdict_on(sensors, summary, than, units, words)
+    return Comparison(sensors, states, courses, verdict)
 
 
 @contextmanager

@@ -89,9 +89,7 @@ def against_gear(logs: Sequence[ReadLog], gear: GearRecord, on_progress: OnProgr
         reference=np.array([in_all_channels(one, one.values) for one in solved]),
         present=np.array([[name in one.channels for name in MEASURED] for one in solved]),
         errors=_errors(solved, decays, [logs[log].course for log in log_of[used]]),
-        by_coefficients=None
-        if gear.pair is not None
-        else np.array([in_all_channels(one, one.by_coefficients) for one in solved])
+        by_coefficients=np.array([in_all_channels(one, one.by_coefficients) for one in solved])
         * board_prior(gear).std,
     )
     places = [one.linear for one in states.values()]

@@ -33,37 +33,38 @@ class Comparison:
 
     Attributes
     ----------
-    kind
-        ``gear`` or ``bags``.
-    logs, gear
-        Paths of the logs, and the gear as it was named.
-    names
-        What is compared, for headings: measured, and predicted or the second log.
     sensors, states
         Each sensor over all states, and each state with its sensors.
     courses
         Course of each log.
     verdict
         Verdict and next step.
+    kind
+        ``gear`` or ``bags``.
+    logs, gear
+        Paths of the logs, and the gear as it was named.
+    names
+        What is compared, for headings: measured, and predicted or the second log.
     notes
         Sentences on what was left out.
     """
 
-    kind: str
-    logs: tuple[str, ...]
-    gear: str
-    names: tuple[str, str]
     sensors: tuple[ComparedSensor, ...]
     states: tuple[ComparedState, ...]
     courses: tuple[ComparedCourse, ...]
     verdict: Verdict
-    notes: tuple[str, ...]
+    kind: str = 'gear'
+    logs: tuple[str, ...] = ()
+    gear: str = ''
+    names: tuple[str, str] = ('measured', 'predicted')
+    notes: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
         """Heading: the logs and what they are compared with."""
-        names = [Path(one).name for one in (*self.logs, self.gear) if one]
-        return f'{", ".join(names[:-1])} and {names[-1]}'
+        if self.kind == 'bags':
+            return ' and '.join(self.names)
+        return f'{", ".join(Path(log).name for log in self.logs)} and {Path(self.gear).name}'
 
     @property
     def next_step(self) -> str:

@@ -1,5 +1,6 @@
 """States and sensors of a comparison: differences with their errors, and trends."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -47,8 +48,6 @@ class ComparedState:
         Index of the log it is from.
     hours
         Time from the start of the log to its middle, h.
-    minutes
-        Number of rows averaged.
     inputs
         Warp lengths (m), port and starboard, and speed (m/s), as measured.
     sensors
@@ -57,7 +56,6 @@ class ComparedState:
 
     log: int
     hours: float
-    minutes: int
     inputs: tuple[float, float, float]
     sensors: Mapping[str, Compared]
 
@@ -143,34 +141,29 @@ def states_of(rows: Rows) -> tuple[ComparedState, ...]:
     """Average the rows of each state."""
     found = []
     for state in range(1 + int(rows.state.max(initial=-1))):
-        own = np.flatnonzero(rows.state == state)
-        columns = np.flatnonzero(rows.present[own].any(axis=0))
-        counts = rows.present[own].sum(axis=0)
-        weights = np.zeros((len(columns), *rows.present.shape))
-        for number, column in enumerate(columns):
-            with_it = own[rows.present[own, column]]
-            weights[number, with_it, column] = 1.0 / len(with_it)
-        stds = np.sqrt(np.diag(rows.errors.covariance(weights)))
-        measured, reference = (
-            (values[own] * rows.present[own]).sum(axis=0) / np.maximum(counts, 1)
-            for values in (rows.measured, rows.reference)
-        )
+        own = rows.state == state
         port, starboard, speed = map(float, rows.inputs[own].mean(axis=0))
-        found.append(
-            ComparedState(
-                log=int(rows.log[own[0]]),
-                hours=float(rows.hours[own].mean()),
-                minutes=len(own),
-                inputs=(port, starboard, speed),
-                sensors={
-                    rows.channels[column]: Compared(
-                        float(measured[column]), float(reference[column]), float(std)
-                    )
-                    for column, std in zip(columns, stds, strict=True)
-                },
-            )
-        )
+        sensors = {}
+        for column, name in enumerate(rows.channels):
+            if (with_it := own & rows.present[:, column]).any():
+                sensors[name] = _compared(rows, column, with_it / with_it.sum())
+        log, hours = int(rows.log[own][0]), float(rows.hours[own].mean())
+        found.append(ComparedState(log, hours, (port, starboard, speed), sensors))
     return tuple(found)
+
+
+def _compared(rows: Rows, column: int, weights: FloatArray) -> Compared:
+    """Return the mean of a channel with weights (n,)."""
+    variance = rows.errors.covariance(_in_column(rows, column, weights[None]))[0, 0]
+    measured, reference = weights @ rows.measured[:, column], weights @ rows.reference[:, column]
+    return Compared(float(measured), float(reference), math.sqrt(variance))
+
+
+def _in_column(rows: Rows, column: int, weights: FloatArray) -> FloatArray:
+    """Return weights (q, n) of one channel as weights (q, n, k) of all."""
+    full = np.zeros((len(weights), *rows.present.shape))
+    full[:, :, column] = weights
+    return full
 
 
 def sensors_of(
@@ -182,38 +175,31 @@ def sensors_of(
         by_state, own = rows.by_state(column)
         if not len(own):
             continue
-        measured, reference = (
-            by_state @ rows.measured[:, column],
-            by_state @ rows.reference[:, column],
-        )
         unit = CHANNELS[name].unit
-        scale = np.ones(len(own)) if unit == 'rad' else np.maximum(np.abs(reference), 1e-9)
-        fractions = (measured - reference) / scale
-        lines = [np.full(len(own), 1.0 / len(own))]
+        seen = [states[state].sensors[name] for state in own]
+        scale = np.array([1.0 if unit == 'rad' else max(abs(one.reference), 1e-9) for one in seen])
+        fractions = np.array([one.difference for one in seen]) / scale
         axes = _axes([states[state] for state in own])
-        lines += [_slope(values) / scale for values in axes.values()]
-        full = np.zeros((len(lines), *rows.present.shape))
-        full[:, :, column] = np.array(lines) @ by_state
-        covariance = rows.errors.covariance(full)
-        stds = np.sqrt(np.diag(covariance))
-        trends = [
+        lines = [np.full(len(own), 1.0 / len(own)), *(_slope(axes[axis]) / scale for axis in axes)]
+        full = _in_column(rows, column, np.array(lines) @ by_state)
+        stds = np.sqrt(np.diag(rows.errors.covariance(full)))
+        trends = tuple(
             _trend(axis, values, fractions, float(std))
             for (axis, values), std in zip(axes.items(), stds[1:], strict=True)
-        ]
-        mean = Compared(float(measured.mean()), float(reference.mean()), float(stds[0]))
-        sensors.append(ComparedSensor(name, unit, mean, fractions, tuple(trends)))
+        )
+        mean = _compared(rows, column, by_state.mean(axis=0))
+        sensors.append(ComparedSensor(name, unit, mean, fractions, trends))
         # Time is left out of the vector: a drift of a sensor is no matter of the boards.
         kept = [0, *(1 + i for i, axis in enumerate(axes) if axis != 'time')]
         weights.append(full[kept])
         names += [name] * len(kept)
     together = np.concatenate(weights)
-    values = np.einsum('qnk,nk->q', together, rows.difference)
     by_coefficients = None
     if rows.by_coefficients is not None:
         by_coefficients = np.einsum('qnk,nkc->qc', together, rows.by_coefficients)
+    values = np.einsum('qnk,nk->q', together, rows.difference)
     covariance = rows.errors.covariance(together)
-    summary = Summary(tuple(names), values, covariance, by_coefficients)
-    return tuple(sensors), summary
+    return tuple(sensors), Summary(tuple(names), values, covariance, by_coefficients)
 
 
 def _axes(states: list[ComparedState]) -> dict[str, FloatArray]:
