@@ -15,6 +15,7 @@ from trawl_ros.core.version import __version__ as __version__
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 
 if TYPE_CHECKING:
+    from trawl_ros.api.comparing import compare
     from trawl_ros.api.gear_check import GearCheck, check_gear
     from trawl_ros.api.tows import TowedBag, read_bag, simulate, tow
     from trawl_ros.api.trials import diagnose, identify, plan_trial
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from trawl_ros.solver.trim import trim
 
 _MODULES = {
+    'trawl_ros.api.comparing': ('compare',),
     'trawl_ros.api.gear_check': ('GearCheck', 'check_gear'),
     'trawl_ros.api.tows': ('TowedBag', 'read_bag', 'simulate', 'tow'),
     'trawl_ros.api.trials': ('diagnose', 'identify', 'plan_trial'),
@@ -85,10 +87,10 @@ __all__ = [
     'Bag', 'BagError', 'Command', 'Diagnosis', 'Effect', 'GearCheck', 'GearError', 'GearModel',
     'GearRecord', 'InstrumentSuite', 'NoSteadyState', 'Observables', 'Parameter', 'Report',
     'Scenario', 'ScenarioError', 'Simulation', 'SteadyState', 'TowedBag', 'TrawlError', 'TrialPlan',
-    'Truth', 'WorkProgress', 'build_model', 'catalogue', 'check_bag', 'check_gear', 'diagnose',
-    'export_bag', 'identify', 'import_log', 'load_gear', 'load_instruments', 'load_scenario',
-    'plan_trial', 'plot', 'read_bag', 'read_messages', 'repair_bag', 'simulate', 'steady_state',
-    'tow', 'trim', 'validate',
+    'Truth', 'WorkProgress', 'build_model', 'catalogue', 'check_bag', 'check_gear', 'compare',
+    'diagnose', 'export_bag', 'identify', 'import_log', 'load_gear', 'load_instruments',
+    'load_scenario', 'plan_trial', 'plot', 'read_bag', 'read_messages', 'repair_bag', 'simulate',
+    'steady_state', 'tow', 'trim', 'validate',
 ]  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """``trawl bag``."""
 
 from pathlib import Path
+from typing import Literal
 
 import click
 
@@ -10,9 +11,19 @@ from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import SUFFIX, repair_bag
 from trawl_ros.bags.sentence_log import SentenceLog, write_sentence_log
 from trawl_ros.cli.bag_tables import check_as_json, info_as_json, print_check, print_info
-from trawl_ros.cli.options import BAG, FOLDER, NAMESPACE_OPTION, Number
+from trawl_ros.cli.compare import OUT_OPTION, print_comparison
+from trawl_ros.cli.options import (
+    BAG,
+    FOLDER,
+    FORCE_OPTION,
+    GEAR_OPTION,
+    NAMESPACE_OPTION,
+    UNITS_OPTION,
+    Number,
+)
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console
+from trawl_ros.core.display_units import DisplayUnits
 from trawl_ros.core.errors import BagError
 from trawl_ros.records.fields import WaterColumn
 from trawl_ros.sentences.table import load_tables, packaged_systems
@@ -28,7 +39,7 @@ JSON_OPTION = click.option('--json', 'as_json', is_flag=True, help='Print JSON f
 
 @click.group('bag')
 def command() -> None:
-    """Inspect, check, repair and export bags."""
+    """Inspect, check, repair, compare and export bags."""
 
 
 @command.command('info')
@@ -84,6 +95,63 @@ def check(
     else:
         print_check(done, output_console())
     context.exit(0 if done.sound else EXIT_FINDINGS)
+
+
+@command.command('compare')
+@click.argument('first', metavar='A', type=BAG)
+@click.argument('second', metavar='B', type=BAG)
+@click.option(
+    '--by',
+    type=click.Choice(('state', 'time')),
+    default='state',
+    show_default=True,
+    help='Pair steady states of equal warp and speed, or compare stretches of five minutes.',
+)
+@click.option(
+    '--shift',
+    type=Number(-1e9, 1e9),
+    help='Time that is added to B, s. By default none if the times of both overlap; otherwise '
+    'both start together.',
+)
+@GEAR_OPTION
+@OUT_OPTION
+@UNITS_OPTION
+@NAMESPACE_OPTION
+@FORCE_OPTION
+def compare(
+    first: Path,
+    second: Path,
+    by: Literal['state', 'time'],
+    shift: float | None,
+    gear: str,
+    out: Path | None,
+    units: DisplayUnits,
+    namespace: str,
+    force: bool,
+) -> None:
+    """Compare the bags A and B, measured or simulated, sensor by sensor.
+
+    Only the water of --gear is used, which converts pressures to depths. Differences are A minus B.
+    """
+    from trawl_ros.api.comparing import compare_bags
+    from trawl_ros.comparison.between_bags import Alignment
+
+    console = error_console()
+    with ProgressDisplay(console) as display:
+        found = compare_bags(
+            first,
+            second,
+            by=by,
+            alignment=Alignment(shift_s=shift),
+            gear=gear,
+            out=out,
+            namespace=namespace,
+            units=units,
+            force=force,
+            on_note=lambda note: console.print(note, style='yellow', markup=False),
+            on_progress=display,
+        )
+    print_comparison(found, units, out)
 
 
 @command.command('export')

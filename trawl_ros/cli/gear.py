@@ -5,9 +5,10 @@ from pathlib import Path
 import click
 import numpy as np
 
-from trawl_ros.cli.options import FILE, FOLDER, SPEED, WARP
+from trawl_ros.cli.options import FILE, FOLDER, SPEED, UNITS_OPTION, WARP
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console, plain_table
+from trawl_ros.core.display_units import DisplayUnits
 
 EXIT_FINDINGS = 3
 """Exit code of ``trawl gear check`` with findings; 1 is an error, 2 wrong usage."""
@@ -21,7 +22,8 @@ def command() -> None:
 @command.command('check')
 @click.argument('gear', metavar='GEAR')
 @click.option('--out', type=FOLDER, help='Folder for drawings of the net plan and the rigged gear.')
-def check(gear: str, out: Path | None) -> None:
+@UNITS_OPTION
+def check(gear: str, out: Path | None, units: DisplayUnits) -> None:
     """Check GEAR without solving it, and print its main quantities.
 
     GEAR is a gear file or the name of a gear of the package. The command prints twine area, weights
@@ -85,20 +87,20 @@ def check(gear: str, out: Path | None) -> None:
     for item in found.gear.hung:
         if item.lift_area_m2:
             lift = head * item.lift_area_m2 * len(ropes_of(item))
-            click.echo(f'{item.name}: lift of {lift:.0f} N at 2 knots')
-    table = plain_table('weight in water', 'N', right=('N',))
+            click.echo(f'{item.name}: lift of {units.weight(lift)} at 2 knots')
+    table = plain_table('weight in water', '', right=('',))
     for name, weight in found.weights.items():
-        table.add_row(name, f'{weight:.0f}')
-    table.add_row('all but the warps', f'{sum(found.weights.values()):.0f}')
+        table.add_row(name, units.weight(weight))
+    table.add_row('all but the warps', units.weight(sum(found.weights.values())))
     console.print(table)
     table = plain_table(
-        'drag of the net, kN', *BANDS, 'the model as built', right=(*BANDS, 'the model as built')
+        'drag of the net', *BANDS, 'the model as built', right=(*BANDS, 'the model as built')
     )
     for knots, bands in found.drag.items():
         table.add_row(
             f'{knots:g} knots',
-            *(f'{1e-3 * bands[name]:.0f}' for name in BANDS),
-            f'{1e-3 * drag_of_model(model, knots):.0f}',
+            *(units.shown(bands[name], 'tension', 0) for name in BANDS),
+            units.shown(drag_of_model(model, knots), 'tension', 0),
         )
     console.print(table)
     for key, value in found.derived.items():
@@ -115,9 +117,12 @@ def check(gear: str, out: Path | None) -> None:
 
 @command.command('state')
 @click.argument('gear', metavar='GEAR')
-@click.option('--warp', required=True, type=WARP, help='Warp length, m.')
-@click.option('--speed', required=True, type=SPEED, help='Speed through the water, m/s.')
-def state(gear: str, warp: float, speed: float) -> None:
+@click.option('--warp', required=True, type=WARP, help='Warp length, m or with its unit.')
+@click.option(
+    '--speed', required=True, type=SPEED, help='Speed through the water, m/s or with its unit.'
+)
+@UNITS_OPTION
+def state(gear: str, warp: float, speed: float, units: DisplayUnits) -> None:
     """Print the steady state of GEAR, or the reason why there is none and what would help.
 
     If there is no usable state, the command prints the reason, the speed from which the gear can be
@@ -137,20 +142,22 @@ def state(gear: str, warp: float, speed: float) -> None:
         with ProgressDisplay(error_console()) as display:
             found = advice(model, warp, speed, on_progress=display)
         for line in found.lines if found is not None else ():
-            click.echo(line)
+            click.echo(units.sentence(line))
         raise SystemExit(1) from None
     seen = steady.observables
     if model.gear.pair is None:
         click.echo(
             f'α {np.degrees(seen.port_attack):.1f}°, δ {np.degrees(seen.port_inclination):.1f}°, '
-            f'doors {seen.door_spread:.1f} m apart and {seen.door_depth:.1f} m deep'
+            f'doors {units.shown(seen.door_spread, "width")} apart and '
+            f'{units.shown(seen.door_depth, "depth")} deep'
         )
     click.echo(
-        f'mouth {seen.vertical_opening:.1f} m high and {seen.horizontal_opening:.1f} m wide, '
-        f'headrope {seen.net_depth:.1f} m deep'
+        f'mouth {units.shown(seen.vertical_opening, "width")} high and '
+        f'{units.shown(seen.horizontal_opening, "width")} wide, '
+        f'headrope {units.shown(seen.net_depth, "depth")} deep'
     )
     click.echo(
-        f'{seen.warp_tension / 1e3:.1f} kN on a warp; the slowest motion settles in '
+        f'{units.shown(seen.warp_tension, "tension")} on a warp; the slowest motion settles in '
         f'{steady.stability.settling_time:.0f} s'
     )
 

@@ -15,8 +15,10 @@ from trawl_ros.cli.options import (
     NAMESPACE_OPTION,
     SCENARIO,
     SCHEDULER_OPTION,
+    UNITS_OPTION,
 )
 from trawl_ros.cli.progress import ProgressDisplay, error_console
+from trawl_ros.core.display_units import METRIC, DisplayUnits
 from trawl_ros.estimation.report.motion import motion_lines, motion_table
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.table import (
@@ -47,6 +49,7 @@ TABLE_COLUMNS = 100
     'hauling and veering, and compare it with the fit of steady windows, which takes minutes per '
     'hour of tow. With --steady, fit only the windows, which takes seconds.',
 )  # fmt: skip
+@UNITS_OPTION
 @NAMESPACE_OPTION
 @SCHEDULER_OPTION
 @FORCE_OPTION
@@ -58,6 +61,7 @@ def command(
     no_prior: bool,
     net: bool,
     motion: bool,
+    units: DisplayUnits,
     namespace: str,
     scheduler: str | None,
     force: bool,
@@ -85,10 +89,10 @@ def command(
             on_note=lambda note: console.print(note, style='yellow', markup=False),
             on_progress=display,
         )
-    print_report(report)
+    print_report(report, units)
 
 
-def print_report(report: Report) -> None:
+def print_report(report: Report, units: DisplayUnits = METRIC) -> None:
     """Print the verdict, tables and closing sentences."""
     console = Console(highlight=False, soft_wrap=True)
     width = None if console.is_terminal else TABLE_COLUMNS
@@ -96,7 +100,7 @@ def print_report(report: Report) -> None:
     if not report.paired:
         console.print(coefficient_table(report), width=width)
     if report.windows:
-        console.print(channel_table(report), width=width)
+        console.print(channel_table(report, units), width=width)
     for line in closing_lines(report):
         console.print(line)
     if report.motion is not None and report.windows:

@@ -6,6 +6,8 @@ from typing import Any
 
 import click
 
+from trawl_ros.core.display_units import METRIC, DisplayUnits, parse_units, parse_value
+from trawl_ros.core.errors import TrawlError
 from trawl_ros.records.topics import NAMESPACE
 from trawl_ros.records.towing_limits import LIMITS
 
@@ -28,8 +30,61 @@ class Number(click.FloatRange):
         return number
 
 
-WARP = Number(*LIMITS.warp_m)
-SPEED = Number(*LIMITS.speed_m_s)
+class UnitsType(click.ParamType[DisplayUnits]):
+    """Choice of units; numbers of the same command without a unit are read in them."""
+
+    name = 'units'
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> DisplayUnits:
+        """Read the choice, and keep it for the other parameters."""
+        try:
+            units = value if isinstance(value, DisplayUnits) else parse_units(value)
+        except TrawlError as error:
+            self.fail(str(error), param, ctx)
+        if ctx is not None:
+            ctx.meta[UNITS_KEY] = units
+        return units
+
+
+class QuantityNumber(Number):
+    """Number in a range of SI units, read with a unit such as ``250fm`` or in those of --units.
+
+    Defaults are in SI units.
+    """
+
+    name = 'quantity'
+
+    def __init__(self, quantity: str, low: float, high: float) -> None:
+        super().__init__(low, high)
+        self._quantity = quantity
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Return the number in SI units."""
+        units = METRIC if ctx is None else ctx.meta.get(UNITS_KEY, METRIC)
+        if isinstance(value, str):
+            try:
+                value = parse_value(value, self._quantity, units)
+            except TrawlError as error:
+                self.fail(str(error), param, ctx)
+        return super().convert(value, param, ctx)
+
+
+UNITS_KEY = 'trawl_ros.units'
+"""Key of the chosen units among what click keeps of a command."""
+
+WARP = QuantityNumber('warp', *LIMITS.warp_m)
+SPEED = QuantityNumber('speed', *LIMITS.speed_m_s)
+
+UNITS_OPTION = click.option(
+    '--units', type=UnitsType(), default='metric', show_default=True, is_eager=True,
+    metavar='SYSTEM', help='Units of quantities, printed and read: metric (m, m/s, kN), sea (m, '
+    'knots, tonnes), imperial (fathoms, feet, knots, pounds), or pairs such as '
+    'speed=kn,tension=t,warp=fm. A number may carry its own unit: 250fm, 4kn.',
+)  # fmt: skip
 
 GEAR_OPTION = click.option(
     '--gear', default='kaifuha', show_default=True, help='Gear file of the model, or name of a '

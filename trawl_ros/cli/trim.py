@@ -8,9 +8,10 @@ import click
 import numpy as np
 from click.core import ParameterSource
 
-from trawl_ros.cli.options import FILE, SPEED, WARP, Number
+from trawl_ros.cli.options import FILE, SPEED, UNITS_OPTION, WARP, Number, QuantityNumber
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.display_units import DisplayUnits
 
 if TYPE_CHECKING:
     from trawl_ros.gear.records import GearRecord
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
 KINDS = 'bridles', 'weights', 'floats', 'clump', 'boards'
 """Kinds of changes, those of `trawl_ros.solver.advising.rig_changes`, which is slow to load."""
 
-SPREAD_OR_DEPTH = Number(1.0, 2000.0)
+SPREAD = QuantityNumber('width', 1.0, 2000.0)
+DEPTH = QuantityNumber('depth', 1.0, 2000.0)
 
 MAX_RELATIVE_MISS = 0.05
 """Largest relative difference of the trimmed gear from a wanted spread or depth."""
@@ -56,8 +58,8 @@ def _kinds(
     type=Number(-30.0, 30.0),
     help='Wanted pitch, nose down, deg.',
 )
-@click.option('--spread', type=SPREAD_OR_DEPTH, help='Door spread that determines the angles, m.')
-@click.option('--depth', type=SPREAD_OR_DEPTH, help='Door depth that determines the angles, m.')
+@click.option('--spread', type=SPREAD, help='Door spread that determines the angles, m.')
+@click.option('--depth', type=DEPTH, help='Door depth that determines the angles, m.')
 @click.option(
     '--tension-kn',
     type=Number(0.1, 2000.0),
@@ -86,6 +88,7 @@ def _kinds(
     f'{", ".join(KINDS)}.',
 )
 @click.option('--out', type=FILE, help='New file for a copy of GEAR with the result.')
+@UNITS_OPTION
 @click.pass_context
 def command(
     context: click.Context,
@@ -102,6 +105,7 @@ def command(
     speeds: tuple[float, float] | None,
     free: tuple[str, ...],
     out: Path | None,
+    units: DisplayUnits,
 ) -> None:
     """Find fastening points that give the boards of GEAR the wanted angles.
 
@@ -131,20 +135,23 @@ def command(
     if out is not None:
         require_new(out)
     record = load_gear(gear)
+    tell = Comment(units)
     model, changes, traded = build_model(record), changes_of(record, free), Traded()
     if angles is None:
         assert spread is not None
         assert depth is not None
-        wanted, traded = _measured(model, changes, spread, depth, tension_kn, (warp, speed), pitch)
+        wanted, traded = _measured(
+            model, changes, spread, depth, tension_kn, (warp, speed), pitch, tell
+        )
         angles = wanted.attack, wanted.inclination
         model, changes = traded.model(model), ()
     low, high = speeds or (speed, speed)
     wish = WantedTrim(*angles, float(np.radians(pitch)), warps or (warp, warp), (low, high))
-    points, usable, more, steady = _trimmed(model, changes, wish)
+    points, usable, more, steady = _trimmed(model, changes, wish, tell)
     if wanted is not None and steady is not None:
         reached = replace(wanted, observables=steady.observables)
         if reached.missed_by > MAX_RELATIVE_MISS:
-            click.echo(f'# with these points the gear misses the wanted values: {reached.missed}')
+            tell(f'with these points the gear misses the wanted values: {reached.missed}')
             usable = False
     traded = Traded((*traded.changes, *more.changes))
     if out is not None:
@@ -159,6 +166,17 @@ def _refuse_ignored(context: click.Context, ranges: dict[str, tuple[float, float
     for name, given in ranges.items():
         if given is not None and context.get_parameter_source(name) is not ParameterSource.DEFAULT:
             raise click.UsageError(f'--{name} and --{name}s: found both, expected one of them')
+
+
+@dataclass(frozen=True)
+class Comment:
+    """Printer of comments of a gear file, in the units of a user."""
+
+    units: DisplayUnits
+
+    def __call__(self, text: str) -> None:
+        """Print a sentence."""
+        click.echo(f'# {self.units.sentence(text)}')
 
 
 @dataclass(frozen=True)
@@ -188,7 +206,7 @@ def _with_middle(ends: tuple[float, float]) -> list[float]:
 
 
 def _trimmed(
-    model: 'GearModel', changes: 'tuple[RigChange, ...]', wish: WantedTrim
+    model: 'GearModel', changes: 'tuple[RigChange, ...]', wish: WantedTrim, tell: 'Comment'
 ) -> 'tuple[FloatArray, bool, Traded, SteadyState | None]':
     """Find points and print them.
 
@@ -205,10 +223,10 @@ def _trimmed(
         try:
             trimmed = trim(model, **wish.angles, warp_length=warps[0], speed=speeds[0])
         except NoSteadyState as reason:
-            click.echo(f'# {reason}; the search goes on with all coordinates free')
+            tell(f'{reason}; the search goes on with all coordinates free')
         else:
             click.echo('\n'.join(points_lines(trimmed.points)))
-            click.echo(f'# {state_line(warps[0], speeds[0], trimmed.steady)}')
+            tell(state_line(warps[0], speeds[0], trimmed.steady))
             return trimmed.points, True, Traded(), trimmed.steady
     traded = Traded()
     with ProgressDisplay(error_console()) as display:
@@ -227,7 +245,7 @@ def _trimmed(
         lines.append('none of the allowed changes makes more of the range usable')
     lines.extend(f'at its bound: {coordinate}' for coordinate in found.at_bounds)
     for line in (*lines, closing_line(found), *_advice_lines(found)):
-        click.echo(f'# {line}')
+        tell(line)
     steady = found.found[0].steady if len(found.found) == 1 else None
     return found.points, found.usable == len(found.found), traded, steady
 
@@ -264,6 +282,7 @@ def _measured(
     tension_kn: float | None,
     place: tuple[float, float],
     pitch: float,
+    tell: 'Comment',
 ) -> 'tuple[MeasuredAngles, Traded]':
     from trawl_ros.solver.trimming.measured import angles_from
     from trawl_ros.solver.trimming.traded import Traded, trade_for_place
@@ -271,11 +290,11 @@ def _measured(
     at = {'warp_length': place[0], 'speed': place[1], 'pitch': float(np.radians(pitch))}
     found, traded = angles_from(model, spread=spread, depth=depth, **at), Traded()
     if changes and not found.met:
-        click.echo(f'# {found.told()}')
+        tell(found.told())
         found, traded = trade_for_place(model, changes, found, **at)
-    click.echo(f'# {found.told(None if tension_kn is None else 1e3 * tension_kn)}')
+    tell(found.told(None if tension_kn is None else 1e3 * tension_kn))
     if traded.changes:
-        click.echo(f'# with {traded.told}')
+        tell(f'with {traded.told}')
     return found, traded
 
 

@@ -21,7 +21,7 @@ from promised.documents import ROOT, Document, Promise
 NODE_STARTS_S = 60.0
 NODE_RUNS_S = 2.0
 NODE_ENDS_S = 30.0
-PROGRESS = re.compile('(exporting|repairing|compared changes|changes):')
+PROGRESS = re.compile('(reading|solving|exporting|repairing|compared changes|changes):')
 """What is said every ten seconds on a slow machine."""
 
 RENAMED = re.compile(r'__node:=(\w+)')
@@ -52,7 +52,7 @@ ENDS = {
     'trawl bag check cut.mcap': 3,
     'trawl bag repair cut.mcap': 3,
     'trawl diagnose': 10,
-    'trawl gear state kaifuha --warp 200': 1,
+    'trawl gear state kaifuha --warp 200 --speed 3.0': 1,
     'trawl trim broken.yaml': 1,
     'trawl trim mine.yaml --spread 250': 1,
     'bash secured.sh winch_node': 1,

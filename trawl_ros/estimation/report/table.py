@@ -2,6 +2,7 @@
 
 from rich.table import Table
 
+from trawl_ros.core.display_units import METRIC, DisplayUnits, quantity_of
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.page import percent
 from trawl_ros.estimation.report.report import Report
@@ -34,7 +35,7 @@ def coefficient_table(report: Report) -> Table:
     return table
 
 
-def channel_table(report: Report) -> Table:
+def channel_table(report: Report, units: DisplayUnits = METRIC) -> Table:
     """Mean absolute error over mean measured value per channel: before, after, left out."""
     table = Table(title='Error per channel')
     table.add_column('', style='bold')
@@ -43,12 +44,10 @@ def channel_table(report: Report) -> Table:
         table.add_column(heading, justify='right')
     errors = report.errors
     for i, channel in enumerate(PAPER_CHANNELS):
-        mean, unit = report.measured[:, i].mean(), channel.unit
-        if unit == 'N':
-            mean, unit = mean / 1e3, 'kN'
+        quantity = quantity_of(channel.name, channel.unit)
         table.add_row(
             channel.words,
-            f'{mean:.1f} {unit}',
+            units.shown(float(report.measured[:, i].mean()), quantity),
             *(percent(errors[key][i]) for key in ('start', 'end', 'held_out')),
         )
     return table

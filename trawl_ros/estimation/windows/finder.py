@@ -8,7 +8,7 @@ Memory is bounded by one window of readings per channel.
 
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from trawl_ros.estimation.windows.sounder import Sounder
 from trawl_ros.estimation.windows.statistics import circular_median
 from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
 from trawl_ros.estimation.windows.watermark import NANO, Watermark
-from trawl_ros.records.channels import CHANNELS, INPUTS, WITNESSES, readings
+from trawl_ros.records.channels import CHANNELS, INPUTS, REQUIRED, WITNESSES, readings
 from trawl_ros.records.samples import Sample
 
 WINCH = INPUTS[:2]
@@ -42,6 +42,8 @@ class SteadyWindowFinder:
         Depth (m) for an absolute pressure (Pa).
     options
         Criteria of a steady window.
+    required
+        Channels without which no window is made.
 
     Attributes
     ----------
@@ -57,7 +59,9 @@ class SteadyWindowFinder:
         self,
         pressure_to_depth: Callable[[float], float],
         options: WindowOptions | None = None,
+        required: Sequence[str] = REQUIRED,
     ) -> None:
+        self._required = frozenset(required)
         self._pressure_to_depth = pressure_to_depth
         self._options = options or WindowOptions()
         self._block_ns = round(self._options.block_s * NANO)
@@ -266,15 +270,15 @@ class SteadyWindowFinder:
     def _window(self, start_ns: int, end_ns: int, state: int) -> SteadyWindow | Unheld:
         used: dict[str, ChannelMean] = {}
         lost: list[Unheld] = []
-        for name, channel in CHANNELS.items():
+        for name in CHANNELS:
             buffer = self._buffers[name]
             silent = not buffer.heard(end_ns) and len(buffer.outside(start_ns, end_ns)) == 0
-            if name in WITNESSES or (silent and not channel.required):
+            if name in WITNESSES or (silent and name not in self._required):
                 continue
             mean = channel_mean(buffer, start_ns, end_ns, self._options)
             if isinstance(mean, ChannelMean):
                 used[name] = mean
-            elif channel.required:
+            elif name in self._required:
                 return mean
             else:
                 lost.append(mean)

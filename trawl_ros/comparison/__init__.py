@@ -1,0 +1,1 @@
+"""Comparison of a log with a gear file as it is, or of two bags; nothing is fitted."""
