@@ -142,6 +142,30 @@ def test_a_speed_beside_a_length_is_said_to_be_unused(graph, tow, capfd):
     assert 'velocity of command/winch' in capfd.readouterr().err
 
 
+def test_a_speed_beside_a_length_is_kept_where_it_is_to_be_honoured(graph, tow):
+    simulation, commander = tow(winch_velocity='honoured')
+    topic, message = winch_command(0, 505.0, 505.0)
+    message.velocity = np.array([0.2, 0.0])
+    commander.send(topic, message)
+    graph.until(lambda: simulation._tow.simulation.now.winches[1].length > 504.0)
+    port, starboard = simulation._tow.simulation.now.winches
+    assert command(simulation).winch_speeds == (0.2, math.inf)
+    assert port.speed <= 0.2 + 1e-12
+    assert port.length < starboard.length - 1.0
+    # The next command has no speed, and the winch runs as fast as it can.
+    commander.send(*winch_command(0, 505.0, 505.0))
+    graph.until(lambda: command(simulation).winch_speeds == (math.inf, math.inf))
+
+
+def test_a_speed_beside_a_length_is_refused_by_name_where_it_is_to_be(graph, tow):
+    simulation, commander = tow(winch_velocity='refused')
+    topic, message = winch_command(0, 505.0, 505.0)
+    message.velocity = np.array([0.5, 0.5])
+    commander.send(topic, message)
+    graph.until(lambda: 'winch_velocity' in simulation.all_statuses()[0].message)
+    assert command(simulation).port_length == 500.0
+
+
 def test_winches_that_stop_do_not_creep_though_their_counters_err(gear):
     gear = gear.model_copy(
         update={

@@ -12,7 +12,7 @@ from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
 from trawl_ros.nodes.runtime.qos import LATCHED, STREAM
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.records.topics import STATIC_TRANSFORMS, TOPICS, Topic
+from trawl_ros.records.topics import TOPICS, Topic
 
 if TYPE_CHECKING:
     from trawl_ros.nodes.links.websocket import ViewerServer
@@ -43,7 +43,7 @@ class FoxgloveNode(TrawlNode):
         host, port = self.parameters['host'], int(self.parameters['port'])
         self._topics = {
             self.full_name(topic.name): topic
-            for topic in (*TOPICS.values(), STATIC_TRANSFORMS)
+            for topic in TOPICS.values()
             # The package index has no tf2_msgs; a full installation has.
             if installed(topic.type)
         }

@@ -97,7 +97,7 @@ _ALL_HEARD = {'foxglove_node': CONTRACT, 'bag_recorder': CONTRACT}
 
 def _rights(node: str) -> Rights:
     """Return the rights of a node from the rows of the registry."""
-    rows = (*TOPICS.values(), STATIC_TRANSFORMS)
+    rows = TOPICS.values()
     publishes = [*_ALL_PUBLISHED.get(node, ()), *(row for row in rows if node in row.published_by)]
     hears = [*_ALL_HEARD.get(node, ()), *(row for row in rows if node in row.heard_by)]
     told = () if node in _NOT_WAITED_FOR else (SYNC,)
@@ -138,6 +138,7 @@ def operator_rights() -> Rights:
         (
             *_names(CONTRACT),
             TRANSFORMS.name,
+            STATIC_TRANSFORMS.name,
             SYNC,
             '/rosout',
             '/parameter_events',
