@@ -13,10 +13,11 @@ _TRANSFORMS: tuple[Spec, ...] = (
 
 
 def frame_specs(node: str) -> tuple[Spec, ...]:
-    """Return the parameters of a node for its frames; none if it writes no frames."""
+    """Return the parameters of a node for its frames.
+
+    Every node has the prefix, so that one file of parameters does for all nodes of a ship.
+    """
     frames = frames_of(node, TOPICS.values())
-    if not frames:
-        return ()
     return (
         Text('frame_prefix', '', 'Put before the names of all frames but that of map, as ship_a/.'),
         *(
@@ -24,7 +25,7 @@ def frame_specs(node: str) -> tuple[Spec, ...]:
                  needed=True)
             for frame in frames
         ),
-        *(_TRANSFORMS if node in TRANSFORMS.published_by else ()),
+        *(_TRANSFORMS if frames and node in TRANSFORMS.published_by else ()),
     )  # fmt: skip
 
 
@@ -37,10 +38,8 @@ def published_names(node: str, given: Parameters) -> dict[str, str]:
         If two frames have one name.
     """
     frames = frames_of(node, TOPICS.values())
-    if not frames:
-        return {}
     names = {frame: given[f'{frame}_frame'] for frame in frames}
-    if node in TRANSFORMS.published_by and given['odom_frame']:
+    if frames and node in TRANSFORMS.published_by and given['odom_frame']:
         names[ODOM] = given['odom_frame']
     if len(set(names.values())) < len(names):
         listed = ', '.join(f'{frame}_frame {name}' for frame, name in names.items())
