@@ -3,14 +3,13 @@
 `python test/interface/page.py` draws it anew.
 """
 
-import re
 from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
 from trawl_ros.instruments.parameters import load_instruments
-from trawl_ros.nodes.map_datum import datum_specs
+from trawl_ros.nodes.runtime.datum import datum_specs
 from trawl_ros.nodes.runtime.frames import frame_specs
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import FIXED, Flag, Names, Number, Spec
@@ -66,7 +65,7 @@ CONVENTIONS = {
     'geometry_msgs/msg/PoseWithCovarianceStamped': (
         'm; covariance m², rad²', 'no message; variance 1e6 where not measured',
     ),
-    'geometry_msgs/msg/Vector3Stamped': ('as said: rad or m', 'NaN; ±Inf where there is no seabed'),
+    'geometry_msgs/msg/Vector3Stamped': ('rad or m, as said', 'NaN'),
     'geometry_msgs/msg/WrenchStamped': ('N, N m', 'never missing'),
     'geometry_msgs/msg/PolygonStamped': ('m', 'never missing'),
     'geometry_msgs/msg/PoseStamped': ('m, quaternion', 'never missing'),
@@ -83,6 +82,13 @@ CONVENTIONS = {
     'tf2_msgs/msg/TFMessage': ('m, quaternion', 'no transform'),
 }  # fmt: skip
 """Units of a type's numbers, and what stands for a missing one."""
+
+MISSING = {
+    'truth/seabed': '+Inf where there is no seabed',
+    'vessel/echo_sounder/school': '+Inf without fish (REP-117)',
+    'truth/observables': 'no message',
+}
+"""The same of single topics."""
 
 SERVICE_SENTENCES = {
     'pause': 'Stop the tow where it is; truth and clock stand still.',
@@ -147,6 +153,10 @@ def qos(topic: Topic) -> str:
     return f'{profile.reliability.name.lower()}, {durability}, depth {profile.depth}'
 
 
+def quoted(names: Iterable[str]) -> str:
+    return ', '.join(f'`{name}`' for name in names)
+
+
 def table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     listed = list(heads)
     lines = [listed, ['---'] * len(listed), *rows]
@@ -159,6 +169,7 @@ def table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 def topic_row(topic: Topic) -> tuple[str, ...]:
     unit, missing = CONVENTIONS[topic.type]
+    missing = MISSING.get(topic.name, missing)
     rate = f'{topic.rate:g} Hz' if topic.rate else 'on an event'
     if isinstance(topic, Sensor) and topic.rate is None:
         rate = 'per sweep'
@@ -223,7 +234,7 @@ def joints_table() -> str:
         '`truth/observables`': OBSERVABLES,
         '`identification/estimate`, statuses of `identification/coefficients`': COEFFICIENTS,
     }
-    rows = ((topics, ', '.join(f'`{name}`' for name in names)) for topics, names in named.items())
+    rows = ((topics, quoted(names)) for topics, names in named.items())
     return table(('topic', 'names in order'), rows)
 
 
@@ -241,11 +252,7 @@ def node_section(node: str) -> str:
     ways = {
         'Publishes': rights.publishes, 'Listens to': rights.hears, 'Services': rights.answers,
     }  # fmt: skip
-    said = [
-        f'{way}: {", ".join(f"`{name}`" for name in names)}.'
-        for way, names in ways.items()
-        if names
-    ]
+    said = [f'{way}: {quoted(names)}.' for way, names in ways.items() if names]
     heads = ('parameter', 'default', 'unit', 'range', 'at run time', 'meaning')
     rows = table(heads, map(parameter_row, specs(node)))
     return '\n\n'.join([f'### {node}', *said, rows])
@@ -257,7 +264,6 @@ def page() -> str:
     topics = [
         f'### {title}\n\n{table(heads, map(topic_row, rows))}' for title, rows in SECTIONS.items()
     ]
-    common = ', '.join(f'`{name}`' for name in EVERY_NODE.answers)
     return '\n\n'.join(
         [
             '# Interface of the nodes',
@@ -272,14 +278,15 @@ def page() -> str:
             'x of its frame.',
             frames_table(),
             '## Quality of service',
-            f'Publishers offer {qos(CLOCK)}; latched topics {qos(STATIC_TRANSFORMS)}. `qos_overrides` '
-            'change history, depth and reliability of each. Subscribers take best effort too.',
+            f'Publishers offer {qos(CLOCK)}; latched topics {qos(STATIC_TRANSFORMS)}. '
+            '`qos_overrides` change history, depth and reliability of each. Subscribers take best '
+            'effort too.',
             '## Topics',
             *topics,
             '## Joint names',
             joints_table(),
             '## Services',
-            f'Each node also offers {common}.',
+            f'Each node also offers {quoted(EVERY_NODE.answers)}.',
             services_table(),
             '## Nodes and parameters',
             f'What cannot be changed at run time is refused: "{FIXED}". Every node publishes '
@@ -290,5 +297,4 @@ def page() -> str:
 
 
 if __name__ == '__main__':
-    text = re.sub(r' +$', '', page(), flags=re.MULTILINE)
-    DOCUMENT.write_text(text, encoding='utf-8')
+    DOCUMENT.write_text(page(), encoding='utf-8')

@@ -13,8 +13,8 @@ from trawl_ros.nodes.nmea_in import NmeaIn
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import ParameterError
 from trawl_ros.nodes.runtime.qos import CONSUMER
+from trawl_ros.nodes.runtime.transforms import ShipPose
 from trawl_ros.nodes.sim_node import SimNode
-from trawl_ros.nodes.transforms import ShipPose
 from trawl_ros.nodes.vessel_node import VesselNode
 from trawl_ros.nodes.winch_node import WinchNode
 from trawl_ros.records.samples import FixSample, HeadingSample

@@ -20,8 +20,8 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.messages.commands import VESSEL_COMMAND, vessel_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
-from trawl_ros.nodes.map_datum import datum_specs
 from trawl_ros.nodes.runtime.credit import ConsumerProgress
+from trawl_ros.nodes.runtime.datum import datum_specs
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Number, ParameterError, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER

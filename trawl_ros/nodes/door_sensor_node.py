@@ -8,7 +8,7 @@ from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.messages.truth_from_messages import door_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.transforms import send_mounts
+from trawl_ros.nodes.runtime.transforms import send_mounts
 from trawl_ros.records.frames import SPREAD_MOUNT
 from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import Sample

@@ -25,7 +25,7 @@ from trawl_ros.messages.truth_from_messages import observables_truth
 from trawl_ros.model.water import build_water
 from trawl_ros.nodes.runtime.credit import ConsumerProgress, Consumers
 from trawl_ros.nodes.runtime.node import TrawlNode
-from trawl_ros.nodes.runtime.parameters import Names, Number, Text
+from trawl_ros.nodes.runtime.parameters import Names, Number, Spec, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER, STREAM
 from trawl_ros.records import topics
 from trawl_ros.records.samples import INSTRUMENTS, Sample
@@ -142,7 +142,7 @@ class InstrumentNode(TrawlNode, ABC):
         cls.SAMPLES = tuple(row.name for row in INSTRUMENTS if cls.NAME in row.published_by)
         cls.TWINS = tuple(row.name for row in topics.TWINS if cls.NAME in row.published_by)
 
-    SPECS: ClassVar = (
+    SPECS: ClassVar[tuple[Spec, ...]] = (
         Text('scenario', '', 'Scenario file or name: its instruments, seed, water and changes of '
              'state are used.'),
         Text('gear', 'kaifuha', 'Gear file or name, for the water and for effects that instruments '

@@ -23,14 +23,14 @@ from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.nodes.command_watch import MAX_AGE, CommandWatch
 from trawl_ros.nodes.links.channels import parse_link
 from trawl_ros.nodes.links.threads import LineSource
-from trawl_ros.nodes.map_datum import datum_specs
+from trawl_ros.nodes.runtime.datum import datum_specs
 from trawl_ros.nodes.runtime.incoming import error_of_program
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.nodes.runtime.reading import possible_sample
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.transforms import ShipPose, send_mounts, sends_transforms
+from trawl_ros.nodes.runtime.transforms import ShipPose, send_mounts, sends_transforms
 from trawl_ros.records.fields import FIELDS, WaterColumn
 from trawl_ros.records.frames import SPREAD_MOUNT, echo_sounder_mount
 from trawl_ros.records.possible import impossible

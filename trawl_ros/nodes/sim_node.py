@@ -27,6 +27,7 @@ from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.nodes.runtime.run import run
+from trawl_ros.nodes.runtime.transforms import sends_transforms
 from trawl_ros.nodes.towing import (
     DEFAULT_START,
     CommandedTow,
@@ -34,7 +35,6 @@ from trawl_ros.nodes.towing import (
     commanded_tow,
     fallen_sides,
 )
-from trawl_ros.nodes.transforms import sends_transforms
 from trawl_ros.records.topics import CLOCK, TRUTH
 from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.records.truth import Truth

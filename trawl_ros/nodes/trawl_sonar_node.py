@@ -10,7 +10,7 @@ from trawl_ros.messages.truth_from_messages import net_truth, schools_truth, sea
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
 from trawl_ros.nodes.runtime.parameters import Text
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.transforms import send_mounts
+from trawl_ros.nodes.runtime.transforms import send_mounts
 from trawl_ros.records.frames import WIDTH_MOUNT
 from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.registry import changed

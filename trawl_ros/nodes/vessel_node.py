@@ -7,9 +7,9 @@ from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.messages.truth_from_messages import schools_truth, seabed_truth, vessel_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
-from trawl_ros.nodes.map_datum import datum_specs
+from trawl_ros.nodes.runtime.datum import datum_specs
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.nodes.transforms import send_mounts
+from trawl_ros.nodes.runtime.transforms import send_mounts
 from trawl_ros.records.frames import echo_sounder_mount
 from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import Sample

@@ -18,6 +18,7 @@ from trawl_ros.records.topics import (
     TOPICS,
     TRANSFORMS,
     TRUTH,
+    TWINS,
     Topic,
 )
 
@@ -91,7 +92,7 @@ _NOT_WAITED_FOR = (*_SOURCES, 'nmea_in', 'set_points', 'view_node', 'foxglove_no
 
 # Recorded commands are not played on a secured graph.
 _ALL_PUBLISHED = {'bag_player': (*TRUTH, *INSTRUMENTS, *ESTIMATES)}
-_ALL_HEARD = {'foxglove_node': CONTRACT, 'bag_recorder': CONTRACT}
+_ALL_HEARD = {'foxglove_node': (*CONTRACT, *TWINS), 'bag_recorder': CONTRACT}
 """Nodes that play, record or show every topic of some kinds."""
 
 
@@ -136,7 +137,7 @@ def operator_rights() -> Rights:
     return Rights(
         _names(COMMANDS),
         (
-            *_names(CONTRACT),
+            *_names((*CONTRACT, *TWINS)),
             TRANSFORMS.name,
             STATIC_TRANSFORMS.name,
             SYNC,
