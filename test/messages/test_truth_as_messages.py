@@ -264,6 +264,15 @@ def test_transforms_say_the_same_as_the_poses(received):
         assert turned == pose.orientation
 
 
+def test_the_ship_is_left_to_an_estimator_of_poses_where_asked():
+    _, message = transforms_message(TRUTH_RECORD, ship=False)
+    assert {entry.child_frame_id for entry in message.transforms} == {
+        'sonar',
+        'door_port',
+        'door_starboard',
+    }
+
+
 def test_transforms_of_two_ships_are_one_tree_each():
     def edges(prefix):
         _, message = transforms_message(TRUTH_RECORD, odom=True)

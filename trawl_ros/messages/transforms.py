@@ -21,15 +21,18 @@ from trawl_ros.records.topics import (
 from trawl_ros.records.truth import SIDES, Truth
 
 
-def transforms_message(truth: Truth, *, odom: bool = False) -> TopicMessage:
-    """Return the poses of all frames in ``map`` at one instant; with ``odom`` the ship's in it."""
-    ship = (truth.vessel.position, to_quaternion(0.0, 0.0, truth.vessel.heading))
+def transforms_message(truth: Truth, *, ship: bool = True, odom: bool = False) -> TopicMessage:
+    """Return the poses of all frames in ``map`` at one instant.
+
+    The ship's is in frame ``odom`` where that is wanted, or left out without ``ship``.
+    """
+    vessel = (truth.vessel.position, to_quaternion(0.0, 0.0, truth.vessel.heading))
     poses = {SONAR: (truth.net.sonar_position, truth.net.sonar_orientation)}
     for side, door in zip(SIDES, truth.doors, strict=True):
         poses[DOOR_FRAMES[side]] = (door.position, door.orientation)
     return TRANSFORMS.name, ros.tf2_msgs__msg__TFMessage(
         [
-            *_ship(truth.stamp, *ship, odom=odom),
+            *(_ship(truth.stamp, *vessel, odom=odom) if ship else ()),
             *(_transform(truth.stamp, MAP, frame, *pose) for frame, pose in poses.items()),
         ]
     )

@@ -117,7 +117,7 @@ class NmeaIn(TrawlNode):
         vessel = load_instruments('default').vessel
         datum = self.declare_specs(datum_specs(vessel))
         self._pose: ShipPose | None = None
-        if sends_transforms(self):
+        if self.frames['publish_tf'] and sends_transforms(self):
             origin = Datum(datum['datum_lat'], datum['datum_lon'])
             self._pose = ShipPose(origin, odom=bool(self.frames['odom_frame']))
         send_mounts(

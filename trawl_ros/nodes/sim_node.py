@@ -306,8 +306,8 @@ class SimNode(TrawlNode):
         for topic, message in truth_messages(replace(truth, stamp=stamp), stated):
             self.send(topic, message)
         if self._transforms:
-            odom = bool(self.frames['odom_frame'])
-            self.send(*transforms_message(replace(truth, stamp=stamp), odom=odom))
+            ship, odom = self.frames['publish_tf'], bool(self.frames['odom_frame'])
+            self.send(*transforms_message(replace(truth, stamp=stamp), ship=ship, odom=odom))
         self._publish_gear(truth.stamp / SECOND, stamp)
         self._latest = stamp
         self._consumers.sent(stamp)

@@ -5,8 +5,8 @@ from trawl_ros.records.frames import FRAME_SENTENCES, frame_names, frames_of
 from trawl_ros.records.topics import ODOM, TOPICS, TRANSFORMS
 
 _TRANSFORMS: tuple[Spec, ...] = (
-    Flag('publish_tf', True, 'Whether to publish poses on /tf, where tf2_msgs is installed; false '
-         'where an estimator of poses does.'),
+    Flag('publish_tf', True, "Whether to publish the ship's pose on /tf, where tf2_msgs is "
+         'installed; false where an estimator of poses does.'),
     Text('odom_frame', '', 'Frame between map and the ship on /tf, as in REP-105; without one the '
          'ship is in map.'),
 )  # fmt: skip

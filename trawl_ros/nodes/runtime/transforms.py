@@ -28,11 +28,11 @@ def send_mounts(node: TrawlNode, mounts: Sequence[Mount]) -> None:
 
 
 def sends_transforms(node: TrawlNode) -> bool:
-    """Advertise /tf if it is wanted and tf2_msgs is installed; return whether it is."""
-    wanted = bool(node.frames['publish_tf']) and installed(TRANSFORMS.type)
-    if wanted:
+    """Advertise /tf if tf2_msgs is installed; return whether it is."""
+    there = installed(TRANSFORMS.type)
+    if there:
         node.advertise(TRANSFORMS.name)
-    return wanted
+    return there
 
 
 class ShipPose:
