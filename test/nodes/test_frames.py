@@ -1,14 +1,19 @@
 """Frames of a graph have the names that are given; two ships in one graph do not mix."""
 
 import math
+import sys
 from functools import partial
+from types import ModuleType, SimpleNamespace
 
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
+from visualization_msgs.msg import MarkerArray
+
 from trawl_ros.core.geodesy import Datum, to_latitude_longitude
 from trawl_ros.nodes.door_sensor_node import DoorSensorNode
+from trawl_ros.nodes.graph.source import with_history
 from trawl_ros.nodes.nmea_in import NmeaIn
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import ParameterError
@@ -18,7 +23,7 @@ from trawl_ros.nodes.sim_node import SimNode
 from trawl_ros.nodes.vessel_node import VesselNode
 from trawl_ros.nodes.winch_node import WinchNode
 from trawl_ros.records.samples import FixSample, HeadingSample
-from trawl_ros.records.topics import TOPICS
+from trawl_ros.records.topics import STATIC_TRANSFORMS, TOPICS, TRANSFORMS
 
 pytestmark = pytest.mark.ros
 
@@ -39,27 +44,48 @@ HEARD = (
 
 
 class Listener(TrawlNode):
-    """Keeps the last message of each topic, by namespace."""
+    """Keeps the last message of each topic, by namespace, and the parents of frames."""
 
     def __init__(self, **kwargs):
         super().__init__('listener', **kwargs)
-        self.last = {}
+        self.last, self.parents = {}, {}
+        self.listen(TRANSFORMS.name, self._see, CONSUMER)
+        self.listen(STATIC_TRANSFORMS.name, self._see, with_history(CONSUMER))
         for ship in SHIPS:
             for topic in HEARD:
                 full = f'/{ship}/{topic}'
                 take = partial(self.last.__setitem__, (ship, topic))
                 self.listen(full, take, CONSUMER, TOPICS[topic].type)
 
+    def _see(self, message):
+        for entry in message.transforms:
+            self.parents[entry.child_frame_id] = entry.header.frame_id
+
 
 @pytest.fixture(scope='module')
-def fleet(open_graph, gear_path):
+def transform_type():
+    """Stand-in for the type of tf2_msgs, which is in no package index: its bytes are the real ones.
+
+    ROS passes bytes on as they are, so any type does for what is published and heard as bytes.
+    """
+    messages = ModuleType('tf2_msgs.msg')
+    messages.TFMessage = MarkerArray
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, 'tf2_msgs', ModuleType('tf2_msgs'))
+        patch.setitem(sys.modules, 'tf2_msgs.msg', messages)
+        yield
+
+
+@pytest.fixture(scope='module')
+def fleet(open_graph, gear_path, transform_type):
     """Last messages of two ships, each with its own prefix, in one graph."""
     with open_graph() as graph:
         listener = graph.add(Listener)
         for ship, length in SHIPS.items():
             # As a file of parameters for all nodes has it: a node leaves unread what it lacks.
             given = {
-                'frame_prefix': f'{ship}/', 'vessel_frame': 'base_link', 'gear': str(gear_path),
+                'frame_prefix': f'{ship}/', 'vessel_frame': 'base_link', 'odom_frame': 'odom',
+                'gear': str(gear_path),
             }  # fmt: skip
             for kind in (WinchNode, DoorSensorNode, VesselNode):
                 graph.add(partial(kind, namespace=ship), **given)
@@ -69,7 +95,7 @@ def fleet(open_graph, gear_path):
                 warp_length_m=length, speed_m_s=2.1, wait_for=instruments, **given,
             )  # fmt: skip
         graph.until(lambda: len(listener.last) == len(SHIPS) * len(HEARD))
-        return dict(listener.last)
+        return SimpleNamespace(last=dict(listener.last), parents=dict(listener.parents))
 
 
 def frames(message):
@@ -80,7 +106,7 @@ def frames(message):
 
 @pytest.mark.parametrize('ship', SHIPS)
 def test_frames_have_the_prefix_of_their_ship(fleet, ship):
-    found = {topic: frames(fleet[ship, topic]) for topic in HEARD}
+    found = {topic: frames(fleet.last[ship, topic]) for topic in HEARD}
     assert found == {
         'truth/winch': {'map'},
         'truth/vessel/odom': {'map'},
@@ -91,8 +117,8 @@ def test_frames_have_the_prefix_of_their_ship(fleet, ship):
         'vessel/echo_sounder/depth': {f'{ship}/echo_sounder'},
         'door/spread': {f'{ship}/door_port_spread'},
     }
-    assert fleet[ship, 'truth/vessel/odom'].child_frame_id == f'{ship}/base_link'
-    assert fleet[ship, 'truth/door/port/odom'].child_frame_id == f'{ship}/door_port'
+    assert fleet.last[ship, 'truth/vessel/odom'].child_frame_id == f'{ship}/base_link'
+    assert fleet.last[ship, 'truth/door/port/odom'].child_frame_id == f'{ship}/door_port'
 
 
 @pytest.mark.parametrize('ship', SHIPS)
@@ -100,8 +126,25 @@ def test_each_ship_hears_her_own_gear(fleet, ship):
     other = next(name for name in SHIPS if name != ship)
     own, theirs = SHIPS[ship], SHIPS[other]
     for topic in ('truth/winch', 'winch/joint_states'):
-        for length in fleet[ship, topic].position:
+        for length in fleet.last[ship, topic].position:
             assert abs(length - own) < abs(length - theirs)
+
+
+def test_transforms_of_both_ships_are_one_tree_from_map(fleet):
+    own = {
+        'odom': 'map',
+        'base_link': 'odom',
+        'sonar': 'map',
+        'door_port': 'map',
+        'door_starboard': 'map',
+        'echo_sounder': 'base_link',
+        'door_port_spread': 'door_port',
+    }
+    assert fleet.parents == {
+        f'{ship}/{frame}': parent if parent == 'map' else f'{ship}/{parent}'
+        for ship in SHIPS
+        for frame, parent in own.items()
+    }
 
 
 def test_names_that_would_mix_are_refused(graph, gear_path):
