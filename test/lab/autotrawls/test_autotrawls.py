@@ -80,8 +80,8 @@ def history(port, starboard, spread=100.0, speed=0.0):
     times = np.arange(0.0, 2 * SCORED_FROM_S, 0.5)
     shape = (len(times), 2)
     return TowHistory(
-        times, np.broadcast_to((port, starboard), shape), np.full(shape, speed),
-        np.full(shape, 300.0), np.full(len(times), spread), np.full(len(times), 100.0),
+        times, np.broadcast_to((port, starboard), shape), 300.0 + speed * np.outer(times, (1, 1)),
+        np.full(len(times), spread), np.full(len(times), 100.0),
     )  # fmt: skip
 
 

@@ -23,15 +23,14 @@ class TowHistory:
 
     Attributes
     ----------
-    tensions, speeds, lengths
-        Of both warps, port first, (n, 2): N, m/s (out positive), m.
+    tensions, lengths
+        Of both warps, port first, (n, 2): N, m.
     spreads, wanted_spreads
         Door spread, and that of a steady tow at the set lengths without disturbance, (n,), m.
     """
 
     times: FloatArray
     tensions: FloatArray
-    speeds: FloatArray
     lengths: FloatArray
     spreads: FloatArray
     wanted_spreads: FloatArray
@@ -82,7 +81,6 @@ def tow_with(scenario: Scenario, make: MakeController) -> TowHistory:
             (
                 truth.stamp / 1e9,
                 *(winch.tension for winch in both),
-                *(winch.speed for winch in both),
                 *(winch.length for winch in both),
                 float(np.linalg.norm(truth.doors[0].position - truth.doors[1].position)),
             )
@@ -92,16 +90,22 @@ def tow_with(scenario: Scenario, make: MakeController) -> TowHistory:
         found[:, 0],
         found[:, 1:3],
         found[:, 3:5],
-        found[:, 5:7],
-        found[:, 7],
+        found[:, 5],
         _wanted_spreads(trial, found[:, 0]),
     )
 
 
 def _wanted_spreads(trial: Trial, times: FloatArray) -> FloatArray:
-    """Return the door spreads (n,), m, of undisturbed steady tows, linear between set lengths."""
+    """Return the door spreads (n,), m, of undisturbed steady tows, linear between set lengths.
+
+    Changed set lengths count as far as the winches can have come.
+    """
     commands = [trial.scenario.commands_at(float(time)) for time in times]
     lengths = np.array([0.5 * (one.port_length + one.starboard_length) for one in commands])
+    most = trial.scenario.plant.winch.max_speed_m_s
+    for at in range(1, len(times)):
+        way = most * (times[at] - times[at - 1])
+        lengths[at] = lengths[at - 1] + np.clip(lengths[at] - lengths[at - 1], -way, way)
     ends = np.unique([lengths.min(), lengths.max()])
     speed = commands[0].speed
     steady = [steady_state(trial.model, float(end), speed).observables.door_spread for end in ends]
@@ -115,10 +119,12 @@ def score(tow: TowHistory) -> Score:
     port, starboard = tow.tensions[on].T
     imbalance = (port - starboard) / (port + starboard)
     variation = tow.tensions[on].std(axis=0) / tow.tensions[on].mean(axis=0)
+    # Creeping winches have no speed of their own in the truth, but their lengths change.
+    paid_out = np.abs(np.diff(tow.lengths[on], axis=0)).sum(axis=0)
     error = tow.spreads[on] - tow.wanted_spreads[on]
     return Score(
         imbalance=100.0 * float(np.sqrt(np.mean(imbalance**2))),
         tension_std=100.0 * float(variation.mean()),
         spread_error=float(np.sqrt(np.mean(error**2))),
-        wire_speed=float(np.abs(tow.speeds[on]).mean()),
+        wire_speed=float(paid_out.mean() / np.ptp(tow.times[on])),
     )
