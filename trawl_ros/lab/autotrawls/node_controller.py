@@ -74,18 +74,17 @@ class NodeController(StandingWinches):
     ) -> None:
         super().__init__(lengths)
         self._bench, self._executor = bench, executor
-        self._told = lengths
+        self._told: tuple[float, float] | None = None
+        self._client = AsyncParameterClient(bench, bench.commanding())
         self._asked = self._answered = 0
 
     def set_lengths(self, port: float, starboard: float) -> None:
         """Set the parameters of the node, if it has them."""
-        if (port, starboard) == self._told:
+        if (port, starboard) == self._told or not self._client.services_are_ready():
             return
         self._told = (port, starboard)
         values = zip(SET_LENGTHS, self._told, strict=True)
-        client = AsyncParameterClient(self._bench, self._bench.commanding())
-        if client.wait_for_services(timeout_sec=0.0):
-            client.set_parameters([Parameter(name, value=value) for name, value in values])
+        self._client.set_parameters([Parameter(name, value=value) for name, value in values])
 
     def update(self, sample: WinchSample) -> tuple[float, float]:
         """Publish a sample; return the lengths (port, starboard), m, that the node wants."""
