@@ -76,6 +76,25 @@ ROS = [
     )
 ]
 
+# The same of Kilted, to try by hand: both distributions pull one ros-rclpy, so name one only.
+KILTED = [
+    f'ros-kilted-{name}'
+    for name in (
+        'ament-index-python>=1.11,<2',
+        'diagnostic-msgs>=5.5,<6',
+        'geometry-msgs>=5.5,<6',
+        'nav-msgs>=5.5,<6',
+        'rcl-interfaces>=2.3,<3',
+        'rclpy>=9.1,<10',
+        'rmw-fastrtps-cpp>=9.3,<10',
+        'rosgraph-msgs>=2.3,<3',
+        'sensor-msgs>=5.5,<6',
+        'std-msgs>=5.5,<6',
+        'std-srvs>=5.5,<6',
+        'visualization-msgs>=5.5,<6',
+    )
+]
+
 TEST = [
     'colcon-bash>=0.5,<1',
     'colcon-core>=0.18,<1',
@@ -149,6 +168,7 @@ setup(
     install_requires=[*BY_ROSDEP, *BY_PIP],
     extras_require={
         'ros': ROS,
+        'ros-kilted': KILTED,
         'view': VIEW,
         'test': [*TEST, *DOCS, *PEERS, *FOXGLOVE],
         'docs': DOCS,

@@ -13,16 +13,28 @@ from trawl_ros.messages.commands import (
     vessel_command,
     winch_command,
 )
-from trawl_ros.messages.diagnostics import OK, STALE, Status, diagnostic_array, read_statuses
+from trawl_ros.messages.diagnostics import (
+    OK,
+    STALE,
+    WARN,
+    Status,
+    diagnostic_array,
+    read_number,
+    read_statuses,
+)
 from trawl_ros.messages.estimates import (
     ChannelInnovation,
+    coefficients_message,
     covariance_message,
     estimate_message,
     innovation_message,
+    innovations_message,
     read_covariance,
     read_estimate,
     read_innovations,
 )
+from trawl_ros.messages.stamps import stamp_of
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.topics import TOPICS
 
 VALUES = np.linspace(-1.0, 1.0, 12)
@@ -68,6 +80,28 @@ def test_innovations_come_back():
         ChannelInnovation('net_depth', 2.0, 1.0, 1.2),
     )
     assert read_innovations(through_bytes(*innovation_message(5, sent))) == sent
+
+
+def test_coefficients_have_names_and_a_stamp():
+    known = [True] * 11 + [False]
+    message = through_bytes(*coefficients_message(7_000_000_001, VALUES, 0.1 * VALUES**2, known))
+    assert stamp_of(message) == 7_000_000_001
+    statuses = read_statuses(message)
+    assert tuple(status.name for status in statuses) == COEFFICIENTS
+    assert [read_number(status, 'value') for status in statuses] == list(VALUES)
+    assert [read_number(status, 'std') for status in statuses] == list(0.1 * VALUES**2)
+    assert [status.level for status in statuses] == [OK] * 11 + [WARN]
+
+
+def test_innovations_are_statuses_with_a_unit_too():
+    sent = (
+        ChannelInnovation('door_spread', -1.5, 0.8, 0.3),
+        ChannelInnovation('net_depth', 2.0, 1.0, 1.2),
+    )
+    message = through_bytes(*innovations_message(5, sent))
+    spread, depth = read_statuses(message)
+    assert (spread.name, spread.level, depth.level) == ('door_spread', OK, WARN)
+    assert spread.values == {'innovation': '-1.5', 'std': '0.8', 'test ratio': '0.3', 'unit': 'm'}
 
 
 def test_statuses_come_back():

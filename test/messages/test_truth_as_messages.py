@@ -11,6 +11,7 @@ from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.markers import FULL_SCALE, gear_markers, tension_colour
 from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.stamps import stamp_of
+from trawl_ros.messages.transforms import rename_frames, transforms_message
 from trawl_ros.messages.truth_from_messages import (
     door_truth,
     net_truth,
@@ -20,7 +21,8 @@ from trawl_ros.messages.truth_from_messages import (
     vessel_truth,
     winch_truth,
 )
-from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
+from trawl_ros.messages.truth_to_messages import clock_message, truth_messages
+from trawl_ros.records.frames import FRAME_SENTENCES
 from trawl_ros.records.observables import OBSERVABLES, Observables
 from trawl_ros.records.topics import TOPICS, TRUTH
 from trawl_ros.records.truth import (
@@ -260,3 +262,25 @@ def test_transforms_say_the_same_as_the_poses(received):
         moved, turned = entry.transform.translation, entry.transform.rotation
         assert (moved.x, moved.y, moved.z) == (pose.position.x, pose.position.y, pose.position.z)
         assert turned == pose.orientation
+
+
+def test_the_ship_is_left_to_an_estimator_of_poses_where_asked():
+    _, message = transforms_message(TRUTH_RECORD, ship=False)
+    assert {entry.child_frame_id for entry in message.transforms} == {
+        'sonar',
+        'door_port',
+        'door_starboard',
+    }
+
+
+def test_transforms_of_two_ships_are_one_tree_each():
+    def edges(prefix):
+        _, message = transforms_message(TRUTH_RECORD, odom=True)
+        names = {frame: f'{prefix}{frame}' for frame in FRAME_SENTENCES if frame != 'map'}
+        rename_frames(message, names)
+        return {entry.child_frame_id: entry.header.frame_id for entry in message.transforms}
+
+    one, two = edges('a/'), edges('b/')
+    assert not one.keys() & two.keys()
+    assert one['a/vessel'] == 'a/odom'
+    assert one['a/odom'] == one['a/sonar'] == 'map'

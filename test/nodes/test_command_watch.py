@@ -62,7 +62,8 @@ def test_a_ship_whose_commander_is_gone_goes_straight_on_and_her_winches_stop(gr
     run(graph, simulation, TIMEOUT_S + 0.5)
     assert command(simulation).turn_rate == 0.0
     assert command(simulation).speed == 2.1
-    run(graph, simulation, 4.0)
+    # From 0.31 m/s a winch stops in 4.9 s.
+    run(graph, simulation, 6.0)
     winches = simulation._tow.simulation.now.winches
     lengths = [winch.length for winch in winches]
     assert all(winch.speed == 0.0 for winch in winches)
@@ -140,6 +141,30 @@ def test_a_speed_beside_a_length_is_said_to_be_unused(graph, tow, capfd):
     commander.send(topic, message)
     graph.until(lambda: command(simulation).port_length == 505.0)
     assert 'velocity of command/winch' in capfd.readouterr().err
+
+
+def test_a_speed_beside_a_length_is_kept_where_it_is_to_be_honoured(graph, tow):
+    simulation, commander = tow(winch_velocity='honoured')
+    topic, message = winch_command(0, 505.0, 505.0)
+    message.velocity = np.array([0.2, 0.0])
+    commander.send(topic, message)
+    graph.until(lambda: simulation._tow.simulation.now.winches[1].length > 504.0)
+    port, starboard = simulation._tow.simulation.now.winches
+    assert command(simulation).winch_speeds == (0.2, math.inf)
+    assert port.speed <= 0.2 + 1e-12
+    assert port.length < starboard.length - 1.0
+    # The next command has no speed, and the winch runs as fast as it can.
+    commander.send(*winch_command(0, 505.0, 505.0))
+    graph.until(lambda: command(simulation).winch_speeds == (math.inf, math.inf))
+
+
+def test_a_speed_beside_a_length_is_refused_by_name_where_it_is_to_be(graph, tow):
+    simulation, commander = tow(winch_velocity='refused')
+    topic, message = winch_command(0, 505.0, 505.0)
+    message.velocity = np.array([0.5, 0.5])
+    commander.send(topic, message)
+    graph.until(lambda: 'winch_velocity' in simulation.all_statuses()[0].message)
+    assert command(simulation).port_length == 500.0
 
 
 def test_winches_that_stop_do_not_creep_though_their_counters_err(gear):

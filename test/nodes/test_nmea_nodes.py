@@ -2,12 +2,14 @@
 
 import math
 import socket
+import time
 
 import pytest
 
 rclpy = pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
 import numpy as np  # noqa: E402
+from pynmeagps.nmeahelpers import calc_checksum  # noqa: E402
 
 from trawl_ros.core.errors import SentenceError  # noqa: E402
 from trawl_ros.core.network import THIS_MACHINE  # noqa: E402
@@ -283,6 +285,21 @@ def test_set_points_are_not_passed_on_unasked(graph, ship, port):
     graph.until(lambda: ship.report('sentences').level == WARN)
     assert 'parameter commands' in ship.report('sentences').message
     assert ship.commands == []
+
+
+@pytest.mark.parametrize(('age_s', 'taken'), [(0, True), (600, False)])
+def test_set_points_of_another_time_are_refused_where_asked(graph, ship, port, age_s, taken):
+    heard(graph, links=[f'udp://:{port}'], systems=['set_points'], commands=True,
+          max_command_age_s=60.0)  # fmt: skip
+    opened(graph, ship, f'udp://:{port}')
+    tag = f'c:{int(time.time()) - age_s}'
+    sentence = framed('$', 'PTRVS,4.00,N,0.0,D', checksum=True)
+    say(port, f'\\{tag}*{calc_checksum(tag)}\\{sentence}'.encode())
+    if taken:
+        graph.until(lambda: ship.commands)
+    else:
+        graph.until(lambda: 'max_command_age_s' in ship.report('sentences').message)
+        assert ship.commands == []
 
 
 PARTLY = """\

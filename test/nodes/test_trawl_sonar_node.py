@@ -73,13 +73,17 @@ class Deck(TrawlNode):
         )
 
 
-@pytest.fixture
-def deck(graph, gear_path):
+def on_deck(graph, gear_path, **parameters):
     deck = graph.add(Deck)
-    graph.add(TrawlSonarNode, gear=str(gear_path), seed=SEED)
+    graph.add(TrawlSonarNode, gear=str(gear_path), seed=SEED, **parameters)
     graph.until(deck.connected)
     graph.rest(0.5)
     return deck
+
+
+@pytest.fixture
+def deck(graph, gear_path):
+    return on_deck(graph, gear_path)
 
 
 def test_the_node_sends_byte_for_byte_what_the_instruments_give(graph, deck, truths, gear_path):
@@ -123,3 +127,19 @@ def test_a_fault_by_command_silences_image_and_readings_and_goes_again(graph, de
         deck.tell(later)
     graph.until(lambda: all(deck.heard[topic] for topic in swept))
     assert {stamp_of(deck.heard[topic][0]) for topic in swept} == {32 * SECOND}
+
+
+def test_sweeps_are_stamped_at_their_end_where_asked(graph, truths, gear_path):
+    deck = on_deck(graph, gear_path, sweep_stamp='end')
+    swept = [topic for topic in deck.heard if topic not in ('sonar/pressure', 'sonar/bottom')]
+    for truth in truths:
+        deck.tell(truth)
+        if any(deck.heard[topic] for topic in swept):
+            break
+        graph.rest(0.02)
+    graph.until(lambda: all(deck.heard[topic] for topic in swept))
+    sweep = round(SECOND / load_instruments().sonar.sweep.rate_hz)
+    stamps = {stamp_of(deck.heard[topic][0]) for topic in swept}
+    assert stamps == {sweep}
+    # A ray has no time of its own, so nobody asks tf2 for the future.
+    assert deck.heard['sonar/scan'][0].time_increment == 0.0

@@ -217,6 +217,15 @@ def test_a_command_of_somebody_else_takes_over(ship, under_way, sail):
     assert len(ship.answers) == heard
 
 
+def test_a_command_of_another_time_does_not_take_over(ship, under_way, sail):
+    node = under_way(max_command_age_s=5.0)
+    ship.advertise('command/winch')
+    ship.send(*winch_command(ship.now_ns + 60 * SECOND, 310.0, 310.0))
+    sail(1.0)
+    assert ship.status.values['mode'] != 'taken over'
+    assert node.traffic.total('refused') == 1
+
+
 def test_killed_and_restarted_it_goes_on(graph, ship, trial, under_way, sail, tmp_path):
     state = str(tmp_path / 'trial.json')
     node = under_way(state=state)

@@ -136,8 +136,11 @@ def test_packages_of_ros_are_the_same_for_rosdep_and_for_pip(declared, package):
         for text in declared['ROS']
     }
     by_rosdep = {key for key in keys(package.exec_depends) if not key.startswith('python3-')}
-    # The middleware comes with a full ROS 2, `launch` with nothing else.
-    assert by_pip - {'rmw_fastrtps_cpp'} == by_rosdep - {'launch', 'launch_ros'}
+    # The middleware comes with a full ROS 2, the rest with nothing else.
+    alone = {'launch', 'launch_ros', 'robot_state_publisher', 'tf2_msgs'}
+    assert by_pip - {'rmw_fastrtps_cpp'} == by_rosdep - alone
+    kilted = {Requirement(text).name.replace('kilted', 'jazzy') for text in declared['KILTED']}
+    assert kilted == {Requirement(text).name for text in declared['ROS']}
 
 
 def test_every_executable_can_be_imported_with_what_is_declared_alone(declared, package):

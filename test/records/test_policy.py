@@ -10,7 +10,7 @@ from trawl_ros.cli.policy import command
 from trawl_ros.core.resources import share_path
 from trawl_ros.records.permissions import policy
 from trawl_ros.records.rights import NODE_RIGHTS, OPERATOR, SET_POINTS
-from trawl_ros.records.topics import COMMANDS, STATIC_TRANSFORMS, SYNC, TOPICS
+from trawl_ros.records.topics import COMMANDS, SYNC, TOPICS
 
 
 def granted(namespace: str, kind: str) -> dict[str, set[str]]:
@@ -51,7 +51,7 @@ def test_no_instrument_sees_what_is_to_be_estimated() -> None:
 
 
 def test_topics_are_those_of_the_table() -> None:
-    of_ros = {'/rosout', '/parameter_events', STATIC_TRANSFORMS.name, SYNC}
+    of_ros = {'/rosout', '/parameter_events', SYNC}
     for kind in ('publish', 'subscribe'):
         assert set().union(*granted('trawl', kind).values()) <= set(TOPICS) | of_ros
 

@@ -8,18 +8,23 @@ from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.registry import with_numbers
 from trawl_ros.records.rights import enclaves
 from trawl_ros.records.topics import (
+    CLOCK,
     COMMANDS,
     ESTIMATES,
     INSTRUMENTS,
+    STATIC_TRANSFORMS,
     TOPICS,
+    TRANSFORMS,
     TRUTH,
+    TWINS,
     absolute,
     find_topic,
 )
 
 
 def test_no_name_stands_twice():
-    assert len(TOPICS) == len(TRUTH) + len(INSTRUMENTS) + len(ESTIMATES) + len(COMMANDS) + 2
+    rows = (*TRUTH, *INSTRUMENTS, *TWINS, *ESTIMATES, *COMMANDS)
+    assert len(TOPICS) == len(rows) + len((CLOCK, TRANSFORMS, STATIC_TRANSFORMS))
 
 
 def test_types_are_known():

@@ -3,6 +3,9 @@
 import numpy as np
 import pytest
 
+from trawl_ros.api.tows import tow
+from trawl_ros.bags.check import check_bag
+from trawl_ros.bags.reader import Bag
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.scenario.run import Trial, periods_per_truth
 from trawl_ros.scenario.scenario import load_scenario
@@ -108,3 +111,19 @@ def test_a_rare_truth_is_computed_in_periods_of_a_quarter_second_at_most(
     assert period <= 0.25 + 1e-12
     # Stamps count nanoseconds: a period is a whole number of units of 0.05 s.
     assert round(period / 0.05) == pytest.approx(period / 0.05)
+
+
+def test_a_bag_has_transforms_where_the_scenario_wants_them(scenario, tmp_path):
+    scenario(f'{STEPS}record: [instruments, transforms]\n')
+    path = tow(tmp_path / 'trial.yaml', tmp_path / 'bag').path
+    found = list(Bag(path).messages(['/tf', '/tf_static']))
+    parents = {
+        entry.child_frame_id: entry.header.frame_id
+        for message in found
+        for entry in message.message.transforms
+    }
+    assert parents == {
+        'vessel': 'map', 'sonar': 'map', 'door_port': 'map', 'door_starboard': 'map',
+        'echo_sounder': 'vessel', 'door_port_spread': 'door_port', 'sonar_width': 'sonar',
+    }  # fmt: skip
+    assert check_bag(path).sound

@@ -35,6 +35,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
             'lab.commands.benchmark',
             'Measure run times and compare them with other tools.',
         ),
+        'bench': ('lab.commands.bench', 'Compare autotrawls in the same scenarios.'),
         'scenarios': ('cli.scenarios', 'List the scenarios of the package.'),
         'import-log': ('cli.import_log', 'Convert a log from sea, a table or NMEA 0183, to a bag.'),
         'bag': ('cli.bag', 'Inspect, check, repair and export bags.'),

@@ -37,11 +37,16 @@ class SensorEffects:
         Effects of the gear; if there are none, samples pass unchanged.
     water
         Density profile that converts pressure into depth and back.
+
+    Attributes
+    ----------
+    water : Water
+        That density profile.
     """
 
     def __init__(self, effect_set: EffectSet, water: Water) -> None:
         self._effect_set = effect_set
-        self._water = water
+        self.water = water
         self._first: int | None = None
         self._last: Readings = {}
 
@@ -52,7 +57,7 @@ class SensorEffects:
         if self._first is None or sample.stamp < self._first:
             self._first = sample.stamp
         at = Situation(USUAL_INPUTS, hours=(sample.stamp - self._first) / HOUR_NS)
-        true = channel_values(sample, self._water.depth)
+        true = channel_values(sample, self.water.depth)
         shown: Readings = {}
         if not true.keys().isdisjoint(INPUTS):
             inputs = [true.get(*usual) for usual in zip(INPUTS, USUAL_INPUTS, strict=True)]
@@ -62,7 +67,7 @@ class SensorEffects:
         if known := {name: true[name] for name in true if name in OBSERVABLES}:
             shown |= self._sensors(known, at)
         changed = {name: value for name, value in shown.items() if name in true}
-        return with_channel_values(sample, changed, self._water.pressure)
+        return with_channel_values(sample, changed, self.water.pressure)
 
     def _sensors(self, known: Readings, at: Situation) -> Readings:
         """Return the readings of sensors.

@@ -43,7 +43,8 @@ class _Velocity(Instrument[Moving, VelocitySample]):
             ]
         )
         turn = self._measure('yaw_rate', yaw_rate, stamp)
-        return VelocitySample(stamp, self._over, measured, turn)
+        stated = self._stated_std('x'), self._stated_std('yaw_rate')
+        return VelocitySample(stamp, self._over, measured, turn, stated)
 
 
 class SpeedLog(_Velocity):

@@ -84,6 +84,24 @@ def read_winch_command(message: Any) -> tuple[float | None, float | None]:
     return port, starboard
 
 
+def read_winch_speeds(message: Any) -> tuple[float, float]:
+    """Read the greatest speeds (port, starboard), m/s, infinite where 0 or none is given.
+
+    Raises
+    ------
+    MessageError
+        If a speed is infinite.
+    """
+    given = joint_column(WINCH_COMMAND, message, 'velocity')
+    for name, speed in given.items():
+        if math.isinf(speed):
+            raise MessageError(f'{WINCH_COMMAND}: velocity {speed:g} of {name}; expected m/s')
+    # 0 is what is left where nobody sets it, and NaN is none.
+    speeds = [abs(given.get(name, 0.0)) for name in WINCH_NAMES]
+    port, starboard = (speed if speed > 0.0 else math.inf for speed in speeds)
+    return port, starboard
+
+
 def read_vessel_command(message: Any) -> tuple[float, float]:
     """Read the commanded speed through the water (m/s) and rate of turn (rad/s, positive to port).
 

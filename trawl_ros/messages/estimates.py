@@ -9,8 +9,10 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import MessageError
+from trawl_ros.messages.diagnostics import OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.pieces import TopicMessage, joint_column
 from trawl_ros.messages.stamps import header
+from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 LABEL = ','.join(COEFFICIENTS)
@@ -18,6 +20,8 @@ LABEL = ','.join(COEFFICIENTS)
 ESTIMATE = 'identification/estimate'
 COVARIANCE = 'identification/covariance'
 INNOVATION = 'identification/innovation'
+COEFFICIENTS_BY_NAME = 'identification/coefficients'
+INNOVATIONS_BY_NAME = 'identification/innovations'
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,46 @@ def innovation_message(stamp: int, innovations: Sequence[ChannelInnovation]) -> 
         header(stamp, ''),
         [item.channel for item in innovations],
         *(np.array(column, dtype=float) for column in columns),
+    )
+
+
+def coefficients_message(
+    stamp: int, values: FloatArray, std: FloatArray, determined: Sequence[bool]
+) -> TopicMessage:
+    """Turn the coefficients into one stamped message (ns): a status for each, with its name."""
+    rows = zip(COEFFICIENTS, values, std, determined, strict=True)
+    return COEFFICIENTS_BY_NAME, diagnostic_array(
+        stamp,
+        [
+            Status(
+                name,
+                OK if known else WARN,
+                'determined' if known else 'not determined',
+                {'value': repr(float(value)), 'std': repr(float(deviation))},
+            )
+            for name, value, deviation, known in rows
+        ],
+    )
+
+
+def innovations_message(stamp: int, innovations: Sequence[ChannelInnovation]) -> TopicMessage:
+    """Turn the innovations of one window into a message (ns): a status for each channel."""
+    return INNOVATIONS_BY_NAME, diagnostic_array(
+        stamp,
+        [
+            Status(
+                item.channel,
+                OK if item.ratio <= 1.0 else WARN,
+                'within its stated errors' if item.ratio <= 1.0 else 'beyond its stated errors',
+                {
+                    'innovation': repr(item.innovation),
+                    'std': repr(item.std),
+                    'test ratio': repr(item.ratio),
+                    'unit': CHANNELS[item.channel].unit,
+                },
+            )
+            for item in innovations
+        ],
     )
 
 

@@ -50,9 +50,9 @@ def pose(position: Any, orientation: Any) -> ros.geometry_msgs__msg__Pose:
     )
 
 
-def with_covariance(pose: Any) -> ros.geometry_msgs__msg__PoseWithCovariance:
-    """Return a pose without covariance."""
-    return ros.geometry_msgs__msg__PoseWithCovariance(pose, np.zeros(36))
+def with_covariance(pose: Any, std: float) -> ros.geometry_msgs__msg__PoseWithCovariance:
+    """Return a pose with one standard deviation (m and rad); 0 is not known."""
+    return ros.geometry_msgs__msg__PoseWithCovariance(pose, _even_covariance(std))
 
 
 def twist(linear: Any, angular: Any) -> ros.geometry_msgs__msg__Twist:
@@ -60,9 +60,18 @@ def twist(linear: Any, angular: Any) -> ros.geometry_msgs__msg__Twist:
     return ros.geometry_msgs__msg__Twist(vector(linear), vector(angular))
 
 
-def twist_with_covariance(linear: Any, angular: Any) -> ros.geometry_msgs__msg__TwistWithCovariance:
-    """Return a twist without covariance."""
-    return ros.geometry_msgs__msg__TwistWithCovariance(twist(linear, angular), np.zeros(36))
+def twist_with_covariance(
+    linear: Any, angular: Any, std: float
+) -> ros.geometry_msgs__msg__TwistWithCovariance:
+    """Return a twist with one standard deviation (m/s and rad/s); 0 is not known."""
+    covariance = _even_covariance(std)
+    return ros.geometry_msgs__msg__TwistWithCovariance(twist(linear, angular), covariance)
+
+
+def _even_covariance(std: float) -> FloatArray:
+    """Return the covariance (36,) of six components with the same standard deviation."""
+    covariance: FloatArray = (std**2 * np.eye(6)).ravel()
+    return covariance
 
 
 def joint_state(

@@ -95,7 +95,7 @@ def _sonar_scan(row: Row, sample: SonarScanSample) -> Any:
         angle_min=float(sample.angle_min),
         angle_max=float(sample.angle_min + (beams - 1) * sample.angle_increment),
         angle_increment=float(sample.angle_increment),
-        time_increment=float(sample.sweep_s / beams),
+        time_increment=0.0 if sample.stamped_at_end else float(sample.sweep_s / beams),
         scan_time=float(sample.sweep_s),
         range_min=float(sample.min_range),
         range_max=float(sample.max_range),

@@ -1,18 +1,15 @@
 """Conversion of truth into messages, each as (relative topic name, message)."""
 
-from typing import Any
-
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
-from trawl_ros.core.arrays import FloatArray
 from trawl_ros.messages import pieces
-from trawl_ros.messages.pieces import TopicMessage, vector
+from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.point_clouds import point_cloud
 from trawl_ros.messages.rotations import about_z, to_quaternion
-from trawl_ros.messages.stamps import header, to_time
+from trawl_ros.messages.stamps import to_time
 from trawl_ros.records.observables import OBSERVABLES, Observables
-from trawl_ros.records.topics import DOOR_FRAMES, MAP, SONAR, TRANSFORMS, VESSEL
+from trawl_ros.records.topics import DOOR_FRAMES, VESSEL
 from trawl_ros.records.truth import (
     SIDES,
     DoorTruth,
@@ -33,14 +30,17 @@ def clock_message(stamp: int) -> TopicMessage:
     return '/clock', ros.rosgraph_msgs__msg__Clock(to_time(stamp))
 
 
-def truth_messages(truth: Truth) -> list[TopicMessage]:
-    """Convert the truth of one instant into messages on all truth topics except the markers."""
+def truth_messages(truth: Truth, odometry_std: float = 0.0) -> list[TopicMessage]:
+    """Convert the truth of one instant into messages on all truth topics except the markers.
+
+    Odometry states ``odometry_std`` (m, rad, m/s, rad/s) as its noise; 0 states none.
+    """
     messages: list[TopicMessage] = []
     for side, door in zip(SIDES, truth.doors, strict=True):
-        messages += _door(truth.stamp, side, door)
+        messages += _door(truth.stamp, side, door, odometry_std)
     messages += _net(truth.stamp, truth.net)
     messages.append(_winches(truth.stamp, truth.winches))
-    messages += _vessel(truth.stamp, truth.vessel)
+    messages += _vessel(truth.stamp, truth.vessel, odometry_std)
     messages.append(_schools(truth.stamp, truth.schools))
     messages.append(_seabed(truth.stamp, truth.seabed))
     if truth.observables is not None:
@@ -48,7 +48,7 @@ def truth_messages(truth: Truth) -> list[TopicMessage]:
     return messages
 
 
-def _door(stamp: int, side: str, door: DoorTruth) -> list[TopicMessage]:
+def _door(stamp: int, side: str, door: DoorTruth, std: float) -> list[TopicMessage]:
     frame = DOOR_FRAMES[side]
     odometry, angles, wrench = (
         f'truth/door/{side}/{what}' for what in ('odom', 'angles', 'wrench')
@@ -59,8 +59,8 @@ def _door(stamp: int, side: str, door: DoorTruth) -> list[TopicMessage]:
             ros.nav_msgs__msg__Odometry(
                 pieces.topic_header(stamp, odometry),
                 frame,
-                pieces.with_covariance(pieces.pose(door.position, door.orientation)),
-                pieces.twist_with_covariance(door.velocity, door.angular_velocity),
+                pieces.with_covariance(pieces.pose(door.position, door.orientation), std),
+                pieces.twist_with_covariance(door.velocity, door.angular_velocity, std),
             ),
         ),
         (
@@ -131,7 +131,7 @@ def _winches(stamp: int, winches: tuple[WinchTruth, WinchTruth]) -> TopicMessage
     return topic, pieces.joint_state(stamp, topic, *columns)
 
 
-def _vessel(stamp: int, vessel: VesselTruth) -> list[TopicMessage]:
+def _vessel(stamp: int, vessel: VesselTruth, std: float) -> list[TopicMessage]:
     odometry, through_water = 'truth/vessel/odom', 'truth/vessel/velocity_water'
     turning = (0.0, 0.0, vessel.yaw_rate)
     over_ground = about_z(vessel.heading).T @ vessel.velocity_ground
@@ -141,9 +141,9 @@ def _vessel(stamp: int, vessel: VesselTruth) -> list[TopicMessage]:
             odometry,
             ros.nav_msgs__msg__Odometry(
                 pieces.topic_header(stamp, odometry),
-                'vessel',
-                pieces.with_covariance(pose),
-                pieces.twist_with_covariance(over_ground, turning),
+                VESSEL,
+                pieces.with_covariance(pose, std),
+                pieces.twist_with_covariance(over_ground, turning, std),
             ),
         ),
         (
@@ -179,27 +179,4 @@ def _observables(stamp: int, observables: Observables) -> TopicMessage:
         observables.array(),
         np.zeros(0),
         np.zeros(0),
-    )
-
-
-def transforms_message(truth: Truth) -> TopicMessage:
-    """Return the poses of all frames in ``map`` at one instant."""
-    poses: dict[str, tuple[FloatArray, Any]] = {
-        VESSEL: (truth.vessel.position, to_quaternion(0.0, 0.0, truth.vessel.heading)),
-        SONAR: (truth.net.sonar_position, truth.net.sonar_orientation),
-    }
-    for side, door in zip(SIDES, truth.doors, strict=True):
-        poses[DOOR_FRAMES[side]] = (door.position, door.orientation)
-    return TRANSFORMS.name, ros.tf2_msgs__msg__TFMessage(
-        [_transform(truth.stamp, frame, *pose) for frame, pose in poses.items()]
-    )
-
-
-def _transform(stamp: int, frame: str, position: FloatArray, orientation: Any) -> Any:
-    return ros.geometry_msgs__msg__TransformStamped(
-        header(stamp, MAP),
-        frame,
-        ros.geometry_msgs__msg__Transform(
-            vector(position), ros.geometry_msgs__msg__Quaternion(*map(float, orientation))
-        ),
     )

@@ -21,8 +21,9 @@ from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.messages.commands import VESSEL_COMMAND, vessel_command
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.nodes.runtime.credit import ConsumerProgress
+from trawl_ros.nodes.runtime.datum import datum_specs
 from trawl_ros.nodes.runtime.node import TrawlNode
-from trawl_ros.nodes.runtime.parameters import Number, ParameterError, Parameters, Text
+from trawl_ros.nodes.runtime.parameters import Number, ParameterError, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.nodes.runtime.reading import possible_sample
 from trawl_ros.nodes.runtime.run import run
@@ -93,18 +94,7 @@ class AutopilotNode(TrawlNode):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('autopilot_node', **kwargs)
-        record = load_instruments('default').vessel
-        datum = Parameters(
-            self,
-            (
-                Number('datum_lat', record.datum_lat_deg, 'deg', -89.0, 89.0,
-                       'Latitude of the origin of map; by default that of the instruments.'),
-                Number('datum_lon', record.datum_lon_deg, 'deg', -180.0, 180.0,
-                       'Longitude of the origin of map; by default that of the instruments.'),
-            ),
-            self.objection,
-            self.parameter_changed,
-        )  # fmt: skip
+        datum = self.declare_specs(datum_specs(load_instruments('default').vessel))
         if reason := self.objection('mode', self.parameters['mode']):
             raise ParameterError(f'{self.get_fully_qualified_name()}: parameter {reason}')
         self._datum = Datum(datum['datum_lat'], datum['datum_lon'])

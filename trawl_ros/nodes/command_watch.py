@@ -2,6 +2,13 @@
 
 from trawl_ros.core.errors import MessageError
 from trawl_ros.core.time import SECOND
+from trawl_ros.nodes.runtime.parameters import Number
+
+MAX_AGE = Number(
+    'max_command_age_s', 0.0, 's', 0.0, 1e6, 'Largest difference between the stamp of a command '
+    'and the time of this node; others are refused; 0 takes any stamp.', live=True,
+)  # fmt: skip
+"""Parameter of nodes that hear commands."""
 
 
 class CommandWatch:

@@ -8,6 +8,8 @@ from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.messages.truth_from_messages import door_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
 from trawl_ros.nodes.runtime.run import run
+from trawl_ros.nodes.runtime.transforms import send_mounts
+from trawl_ros.records.frames import SPREAD_MOUNT
 from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import Sample
 
@@ -21,6 +23,7 @@ class DoorSensorNode(InstrumentNode):
 
     def set_up(self, setup: Setup) -> Sequence[Faulty]:
         """Make the instruments and give all of them."""
+        send_mounts(self, [SPREAD_MOUNT])
         self._instruments = DoorInstruments(
             setup.parameters.door, setup.draws, surroundings=setup.surroundings
         )

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.network import THIS_MACHINE, is_this_machine
 from trawl_ros.messages.diagnostics import OK, Status
+from trawl_ros.nodes.graph.source import with_history
 from trawl_ros.nodes.runtime.incoming import installed, size_limit
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Text
-from trawl_ros.nodes.runtime.qos import LATCHED, STREAM
+from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.nodes.runtime.run import run
-from trawl_ros.records.topics import STATIC_TRANSFORMS, TOPICS, Topic
+from trawl_ros.records.topics import TOPICS, Topic
 
 if TYPE_CHECKING:
     from trawl_ros.nodes.links.websocket import ViewerServer
@@ -43,7 +44,7 @@ class FoxgloveNode(TrawlNode):
         host, port = self.parameters['host'], int(self.parameters['port'])
         self._topics = {
             self.full_name(topic.name): topic
-            for topic in (*TOPICS.values(), STATIC_TRANSFORMS)
+            for topic in TOPICS.values()
             # The package index has no tf2_msgs; a full installation has.
             if installed(topic.type)
         }
@@ -107,7 +108,8 @@ class FoxgloveNode(TrawlNode):
     def _hear(self, name: str) -> None:
         topic = self._topics[name]
         self._heard.add(name)
-        profile = LATCHED if topic.latched else STREAM
+        # /tf_static has a last message from each of several nodes.
+        profile = with_history(STREAM) if topic.latched else STREAM
         self.listen_raw(name, topic.type, self._passer(name, topic), profile, overridable=False)
 
     def _leave(self, name: str) -> None:

@@ -26,12 +26,16 @@ from trawl_ros.estimation.planning.proposals import knowledge_of
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.messages.estimates import (
+    COEFFICIENTS_BY_NAME,
     COVARIANCE,
     ESTIMATE,
     INNOVATION,
+    INNOVATIONS_BY_NAME,
+    coefficients_message,
     covariance_message,
     estimate_message,
     innovation_message,
+    innovations_message,
 )
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.nodes.runtime.credit import ConsumerProgress
@@ -107,7 +111,8 @@ class IdentificationNode(TrawlNode):
         self._gear = load_gear(parameters['gear'])
         identification = self._identification()
         self._motion = self._learning(identification)
-        for topic in (ESTIMATE, COVARIANCE, STATUS, INNOVATION):
+        twins = (COEFFICIENTS_BY_NAME, INNOVATIONS_BY_NAME)
+        for topic in (ESTIMATE, COVARIANCE, STATUS, INNOVATION, *twins):
             self.advertise(topic)
         self._progress = ConsumerProgress(
             self, idle=lambda: self._worker.idle, busy=lambda: not self._worker.idle
@@ -258,9 +263,13 @@ class IdentificationNode(TrawlNode):
         if told is not None and told is not self._sent:
             self.send(*estimate_message(told.values))
             self.send(*covariance_message(told.covariance))
+            known = told.values, told.std, told.determined
+            self.send(*coefficients_message(told.stamp, *known))
         new = windows is not self._by_windows
         if windows is not None and new and windows.innovation is not None:
-            self.send(*innovation_message(windows.stamp, innovations_of(windows.innovation)))
+            found = innovations_of(windows.innovation)
+            self.send(*innovation_message(windows.stamp, found))
+            self.send(*innovations_message(windows.stamp, found))
         self._sent, self._by_windows = told, windows
         self._say_status(outcome)
         if new and self._adviser is not None and outcome.fit is not None:

@@ -16,6 +16,7 @@ from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.observing import ObservingInstruments
 from trawl_ros.instruments.parameters import InstrumentParameters, load_instruments
 from trawl_ros.messages.commands import FAULT_COMMAND, read_fault_command
+from trawl_ros.messages.covariance_twins import covariance_twin
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.fields import beyond
 from trawl_ros.messages.stamps import stamp_of
@@ -24,7 +25,7 @@ from trawl_ros.messages.truth_from_messages import observables_truth
 from trawl_ros.model.water import build_water
 from trawl_ros.nodes.runtime.credit import ConsumerProgress, Consumers
 from trawl_ros.nodes.runtime.node import TrawlNode
-from trawl_ros.nodes.runtime.parameters import Names, Number, Text
+from trawl_ros.nodes.runtime.parameters import Names, Number, Spec, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER, STREAM
 from trawl_ros.records import topics
 from trawl_ros.records.samples import INSTRUMENTS, Sample
@@ -132,12 +133,16 @@ class InstrumentNode(TrawlNode, ABC):
     SAMPLES: ClassVar[tuple[str, ...]]
     """Topics of samples that are published."""
 
+    TWINS: ClassVar[tuple[str, ...]]
+    """Topics that carry samples with their covariance."""
+
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         cls.TRUTH = tuple(row.name for row in topics.TRUTH if cls.NAME in row.heard_by)
         cls.SAMPLES = tuple(row.name for row in INSTRUMENTS if cls.NAME in row.published_by)
+        cls.TWINS = tuple(row.name for row in topics.TWINS if cls.NAME in row.published_by)
 
-    SPECS: ClassVar = (
+    SPECS: ClassVar[tuple[Spec, ...]] = (
         Text('scenario', '', 'Scenario file or name: its instruments, seed, water and changes of '
              'state are used.'),
         Text('gear', 'kaifuha', 'Gear file or name, for the water and for effects that instruments '
@@ -163,7 +168,7 @@ class InstrumentNode(TrawlNode, ABC):
         self._take_parameter()
         # Sensors of observables work by themselves: elsewhere truth may come without them.
         self._joiner = Joiner([topic for topic in self.TRUTH if topic != OBSERVABLES])
-        for topic in self.SAMPLES:
+        for topic in (*self.SAMPLES, *self.TWINS):
             self.advertise(topic)
         self.listen(FAULT_COMMAND, self._command_fault, STREAM)
         self._progress = ConsumerProgress(self, self._ready())
@@ -232,8 +237,10 @@ class InstrumentNode(TrawlNode, ABC):
         return any(where == topic or where.startswith(f'{topic}/') for topic in others)
 
     def _send_samples(self, samples: Sequence[Sample]) -> None:
-        for sample in samples:
-            self.send(*sample_message(self._sensor_effects(sample)))
+        for sample in map(self._sensor_effects, samples):
+            self.send(*sample_message(sample))
+            if twin := covariance_twin(sample, self._sensor_effects.water.depth):
+                self.send(*twin)
 
     def _ready(self) -> Any:
         names = self.parameters['wait_for']

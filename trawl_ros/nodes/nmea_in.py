@@ -3,12 +3,15 @@
 import math
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from trawl_ros.control.set_points import SetPointGuard, SetPointLimits
 from trawl_ros.core.errors import MessageError, SentenceError
+from trawl_ros.core.geodesy import Datum
 from trawl_ros.core.stamps import impossible_time
 from trawl_ros.core.time import SECOND
+from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.messages.commands import (
     VESSEL_COMMAND,
     WINCH_COMMAND,
@@ -17,15 +20,19 @@ from trawl_ros.messages.commands import (
 )
 from trawl_ros.messages.diagnostics import OK, WARN, Status
 from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.nodes.command_watch import MAX_AGE, CommandWatch
 from trawl_ros.nodes.links.channels import parse_link
 from trawl_ros.nodes.links.threads import LineSource
+from trawl_ros.nodes.runtime.datum import datum_specs
 from trawl_ros.nodes.runtime.incoming import error_of_program
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.nodes.runtime.reading import possible_sample
 from trawl_ros.nodes.runtime.run import run
+from trawl_ros.nodes.runtime.transforms import ShipPose, send_mounts, sends_transforms
 from trawl_ros.records.fields import FIELDS, WaterColumn
+from trawl_ros.records.frames import SPREAD_MOUNT, echo_sounder_mount
 from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample, WinchSample
 from trawl_ros.records.towing_limits import LIMITS
@@ -66,10 +73,14 @@ class NmeaIn(TrawlNode):
              choices=(ARRIVAL, SENTENCES)),
         Number('water_density_kg_m3', 1025.0, 'kg/m3', 900.1, 1099.9, 'By which depths become '
                'pressures.'),
+        Number('draught_m', 0.0, 'm', 0.0, 30.0, 'Depth of the echo sounder below the towing '
+               'blocks, for /tf_static; 0 is that of the default instruments.'),
         Flag('commands', False, 'Pass on set points of the systems (such as set_points) to '
              'command/winch and command/vessel.'),
         Number('command_timeout_s', 10.0, 's', 0.5, 600.0, 'Silence of set points after which the '
                'winches are told to hold.'),
+        replace(MAX_AGE, sentence='Largest difference between the tag block of a set point and the '
+                'time of this node; others are refused; 0 takes any, and any without tag block.'),
         Number('min_length_m', 50.0, 'm', 0.0, LIMITS.warp_m[1],
                'Least warp that a set point may want.'),
         Number('max_length_m', 2000.0, 'm', 0.0, LIMITS.warp_m[1],
@@ -103,6 +114,15 @@ class NmeaIn(TrawlNode):
             )
         )
         self._held = 0
+        vessel = load_instruments('default').vessel
+        datum = self.declare_specs(datum_specs(vessel))
+        self._pose: ShipPose | None = None
+        if self.frames['publish_tf'] and sends_transforms(self):
+            origin = Datum(datum['datum_lat'], datum['datum_lon'])
+            self._pose = ShipPose(origin, odom=bool(self.frames['odom_frame']))
+        send_mounts(
+            self, [echo_sounder_mount(given['draught_m'] or vessel.draught_m), SPREAD_MOUNT]
+        )
         self._clocks: dict[str, LinkClock] = {}
         self._tag_clocks: dict[str, LinkClock] = {}
         topics = {topic for row in self._reader.rows.values() for topic in row.topics}
@@ -207,7 +227,7 @@ class NmeaIn(TrawlNode):
                 f'a reading of {row.topics[0]} by {via}, which another source tells: {rival}'
             )
         if any(topic in COMMANDS for topic in row.topics):
-            self._command(spoken)
+            self._command(spoken, frame.tag_time)
         elif spoken.readings:
             stamp = self._stamp(frame, spoken, link)
             self._publish(self._assembly.take(spoken, stamp, link))
@@ -242,10 +262,17 @@ class NmeaIn(TrawlNode):
                 self._tally.refuse(f'a reading that cannot be: {why}', b'')
                 continue
             self.send(*sample_message(sample))
+            if self._pose and (transform := self._pose.take(sample)):
+                self.send(*transform)
 
-    def _command(self, spoken: Spoken) -> None:
+    def _command(self, spoken: Spoken, tag_time: int | None) -> None:
         if not self.parameters['commands']:
             raise Unreadable('a set point, while parameter commands is false')
+        try:
+            most_s = self.parameters['max_command_age_s']
+            CommandWatch('a set point').take(tag_time or 0, self.now(), 0.0, most_s)
+        except MessageError as reason:
+            raise Unreadable(str(reason)) from None
         told = {topic for topic, _ in spoken.readings}
         try:
             if VESSEL_COMMAND in told:

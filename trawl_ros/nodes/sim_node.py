@@ -14,18 +14,20 @@ from trawl_ros.messages.commands import (
     WINCH_COMMAND,
     read_vessel_command,
     read_winch_command,
+    read_winch_speeds,
 )
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.stamps import stamp_of
-from trawl_ros.messages.truth_to_messages import clock_message, transforms_message, truth_messages
-from trawl_ros.nodes.command_watch import CommandWatch
+from trawl_ros.messages.transforms import transforms_message
+from trawl_ros.messages.truth_to_messages import clock_message, truth_messages
+from trawl_ros.nodes.command_watch import MAX_AGE, CommandWatch
 from trawl_ros.nodes.runtime.credit import SILENT_S, STALLED_S, Consumers, Pacer
-from trawl_ros.nodes.runtime.incoming import installed
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Flag, Names, Number, Text
 from trawl_ros.nodes.runtime.qos import STREAM
 from trawl_ros.nodes.runtime.run import run
+from trawl_ros.nodes.runtime.transforms import sends_transforms
 from trawl_ros.nodes.towing import (
     DEFAULT_START,
     CommandedTow,
@@ -33,7 +35,7 @@ from trawl_ros.nodes.towing import (
     commanded_tow,
     fallen_sides,
 )
-from trawl_ros.records.topics import CLOCK, TRANSFORMS, TRUTH
+from trawl_ros.records.topics import CLOCK, TRUTH
 from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
@@ -68,6 +70,9 @@ def wanted_motion(message: Any) -> tuple[float, float]:
         raise MessageError(f'{VESSEL_COMMAND}: {objection}')
     return speed, turn
 
+
+UNLIMITED = (math.inf, math.inf)
+"""Speeds of winches that run as fast as they can."""
 
 GEAR_MARKERS = 'truth/gear'
 WHEN_SILENT = {VESSEL_COMMAND: 'the ship steers straight on', WINCH_COMMAND: 'the winches stop'}
@@ -107,15 +112,18 @@ class SimNode(TrawlNode):
                'divided by a whole number; a scenario brings its own.'),
         Number('gear_rate_hz', 1.0, 'Hz', 0.0, 1.0, 'Rate of the markers on truth/gear.',
                live=True),
+        Number('odometry_std', 0.0, 'm, rad, m/s, rad/s', 0.0, 10.0, 'Standard deviation that '
+               'odometry of the truth states, for estimators that take 0 as unknown.', live=True),
         Names('wait_for', 'Consumers (node names) without which the tow does not start.'),
         Number('lead_s', 3.0, 's', 1.0, 8.0, 'Simulated time that the slowest consumer may lag '
                'behind.', live=True),
         Number('command_timeout_s', 0.0, 's', 0.0, 3600.0, 'Simulated time without a '
                'command/vessel after which the ship steers straight on, and without a '
                'command/winch after which the winches stop; 0 is never.', live=True),
-        Number('max_command_age_s', 0.0, 's', 0.0, 1e6, 'Largest difference between the stamp of a '
-               'command and the time of this node; others are refused; 0 takes any stamp.',
-               live=True),
+        MAX_AGE,
+        Text('winch_velocity', 'ignored', 'What a velocity beside the position of a command/winch '
+             'does: nothing; honoured it is the greatest speed of that winch; refused the command '
+             'is left out.', choices=('ignored', 'honoured', 'refused'), live=True),
     )  # fmt: skip
 
     _clock_published = False
@@ -131,10 +139,7 @@ class SimNode(TrawlNode):
             self.advertise(CLOCK.name)
         for topic in TRUTH:
             self.advertise(topic.name)
-        # The package index has no tf2_msgs; a full installation has.
-        self._transforms = installed(TRANSFORMS.type)
-        if self._transforms:
-            self.advertise(TRANSFORMS.name)
+        self._transforms = sends_transforms(self)
         self._consumers = Consumers(self, self.parameters['wait_for'])
         self._pacer = Pacer(self.parameters['time_scale'])
         self._tow, self._period = self._prepare()
@@ -297,10 +302,12 @@ class SimNode(TrawlNode):
         stamp = truth.stamp + (self._offset or 0)
         if self._clock_published:
             self.send(*clock_message(stamp))
-        for topic, message in truth_messages(replace(truth, stamp=stamp)):
+        stated = self.parameters['odometry_std']
+        for topic, message in truth_messages(replace(truth, stamp=stamp), stated):
             self.send(topic, message)
         if self._transforms:
-            self.send(*transforms_message(replace(truth, stamp=stamp)))
+            ship, odom = self.frames['publish_tf'], bool(self.frames['odom_frame'])
+            self.send(*transforms_message(replace(truth, stamp=stamp), ship=ship, odom=odom))
         self._publish_gear(truth.stamp / SECOND, stamp)
         self._latest = stamp
         self._consumers.sent(stamp)
@@ -330,11 +337,23 @@ class SimNode(TrawlNode):
 
     def _command_winches(self, message: Any) -> None:
         wanted = wanted_lengths(message)
-        self._commanded(WINCH_COMMAND, message).command_winches(*wanted)
-        if any(message.velocity):
-            self.say(
-                f'velocity of {WINCH_COMMAND}', WARN, 'not used: winches pay out at their own speed'
+        speeds = self._wanted_speeds(message)
+        self._commanded(WINCH_COMMAND, message).command_winches(*wanted, speeds)
+
+    def _wanted_speeds(self, message: Any) -> tuple[float, float]:
+        """Return the greatest speeds of the winches (m/s) by the parameter for velocities."""
+        speeds, role = read_winch_speeds(message), self.parameters['winch_velocity']
+        if role == 'honoured' or speeds == UNLIMITED:
+            return speeds
+        if role == 'refused':
+            raise MessageError(
+                f'{WINCH_COMMAND}: velocity {list(message.velocity)} beside a position; expected '
+                "none, or the parameter winch_velocity to be 'honoured'"
             )
+        self.say(
+            f'velocity of {WINCH_COMMAND}', WARN, 'not used: winches pay out at their own speed'
+        )
+        return UNLIMITED
 
     def _command_vessel(self, message: Any) -> None:
         wanted = wanted_motion(message)

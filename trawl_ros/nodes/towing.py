@@ -1,5 +1,6 @@
 """Tow that obeys commands as they come, beside `Trial`, which follows a scenario's."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
@@ -96,11 +97,17 @@ class CommandedTow:
         """Simulated time since the start, s."""
         return self.simulation.now.stamp / NANOSECONDS
 
-    def command_winches(self, port: float | None, starboard: float | None) -> None:
-        """Command warp lengths (m); None leaves that winch as it is."""
+    def command_winches(
+        self,
+        port: float | None,
+        starboard: float | None,
+        speeds: tuple[float, float] = (math.inf, math.inf),
+    ) -> None:
+        """Command warp lengths (m), None leaving that winch as it is, and greatest speeds (m/s)."""
         wanted = self.simulation.command
         self.simulation.command = replace(
             wanted,
+            winch_speeds=speeds,
             port_length=wanted.port_length if port is None else port,
             starboard_length=wanted.starboard_length if starboard is None else starboard,
         )

@@ -26,6 +26,7 @@ from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_a
 from trawl_ros.messages.from_messages import to_sample
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.model.water import build_water
+from trawl_ros.nodes.command_watch import MAX_AGE, CommandWatch
 from trawl_ros.nodes.runtime.credit import HEADER, ConsumerProgress, consumer_of
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names
@@ -80,6 +81,7 @@ class TrialNode(TrawlNode):
 
     SPECS: ClassVar = (
         *TRIAL_SPECS,
+        MAX_AGE,
         Names('needs', 'Nodes that must be heard on sync/progress; without one of them it holds.',
               ('identification_node',)),
     )  # fmt: skip
@@ -175,8 +177,11 @@ class TrialNode(TrawlNode):
         trial = self._trial
         if trial.memory.mode == 'taken over' or trial.memory.phase in ('start', 'done'):
             return
-        if (topic, stamp_of(message)) in self._own:
+        stamp = stamp_of(message)
+        if (topic, stamp) in self._own:
             return
+        # A simulation that refuses an old command is not taken over by it either.
+        CommandWatch(topic).take(stamp, self._time(), 0.0, self.parameters['max_command_age_s'])
         self._obey(partial(trial.take_over, f'another node publishes {topic}'))
 
     def _obey(self, act: Callable[[], str]) -> str:

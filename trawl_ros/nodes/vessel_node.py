@@ -7,8 +7,10 @@ from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.messages.truth_from_messages import schools_truth, seabed_truth, vessel_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
-from trawl_ros.nodes.runtime.parameters import Number, Parameters
+from trawl_ros.nodes.runtime.datum import datum_specs
 from trawl_ros.nodes.runtime.run import run
+from trawl_ros.nodes.runtime.transforms import send_mounts
+from trawl_ros.records.frames import echo_sounder_mount
 from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import Sample
 
@@ -28,17 +30,8 @@ class VesselNode(InstrumentNode):
     def set_up(self, setup: Setup) -> Sequence[Faulty]:
         """Make the instruments and give all of them."""
         record = setup.parameters.vessel
-        datum = Parameters(
-            self,
-            (
-                Number('datum_lat', record.datum_lat_deg, 'deg', -89.0, 89.0,
-                       'Latitude of the origin of map; by default that of the instruments.'),
-                Number('datum_lon', record.datum_lon_deg, 'deg', -180.0, 180.0,
-                       'Longitude of the origin of map; by default that of the instruments.'),
-            ),
-            self.objection,
-            self.parameter_changed,
-        )  # fmt: skip
+        datum = self.declare_specs(datum_specs(record))
+        send_mounts(self, [echo_sounder_mount(record.draught_m)])
         placed = {'datum_lat_deg': datum['datum_lat'], 'datum_lon_deg': datum['datum_lon']}
         self._instruments = VesselInstruments(
             record.model_copy(update=placed), setup.draws, surroundings=setup.surroundings

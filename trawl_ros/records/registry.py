@@ -17,7 +17,11 @@ NAMESPACE = 'trawl'
 MAP = 'map'
 VESSEL = 'vessel'
 SONAR = 'sonar'
+ODOM = 'odom'
+ECHO_SOUNDER = 'echo_sounder'
+SONAR_WIDTH = 'sonar_width'
 DOOR_FRAMES = {side: f'door_{side}' for side in SIDES}
+DOOR_SPREAD = 'door_port_spread'
 
 WINCH_NAMES = tuple(f'{side}_warp' for side in SIDES)
 """Joint names of the winches, in the order of `SIDES`."""

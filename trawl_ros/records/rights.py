@@ -18,6 +18,7 @@ from trawl_ros.records.topics import (
     TOPICS,
     TRANSFORMS,
     TRUTH,
+    TWINS,
     Topic,
 )
 
@@ -91,13 +92,13 @@ _NOT_WAITED_FOR = (*_SOURCES, 'nmea_in', 'set_points', 'view_node', 'foxglove_no
 
 # Recorded commands are not played on a secured graph.
 _ALL_PUBLISHED = {'bag_player': (*TRUTH, *INSTRUMENTS, *ESTIMATES)}
-_ALL_HEARD = {'foxglove_node': CONTRACT, 'bag_recorder': CONTRACT}
+_ALL_HEARD = {'foxglove_node': (*CONTRACT, *TWINS), 'bag_recorder': CONTRACT}
 """Nodes that play, record or show every topic of some kinds."""
 
 
 def _rights(node: str) -> Rights:
     """Return the rights of a node from the rows of the registry."""
-    rows = (*TOPICS.values(), STATIC_TRANSFORMS)
+    rows = TOPICS.values()
     publishes = [*_ALL_PUBLISHED.get(node, ()), *(row for row in rows if node in row.published_by)]
     hears = [*_ALL_HEARD.get(node, ()), *(row for row in rows if node in row.heard_by)]
     told = () if node in _NOT_WAITED_FOR else (SYNC,)
@@ -136,8 +137,9 @@ def operator_rights() -> Rights:
     return Rights(
         _names(COMMANDS),
         (
-            *_names(CONTRACT),
+            *_names((*CONTRACT, *TWINS)),
             TRANSFORMS.name,
+            STATIC_TRANSFORMS.name,
             SYNC,
             '/rosout',
             '/parameter_events',

@@ -5,7 +5,7 @@ channels, limits, rights and tables all come from `INSTRUMENTS`.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -13,8 +13,11 @@ import numpy as np
 from trawl_ros.core.arrays import ByteArray, FloatArray
 from trawl_ros.records.registry import (
     DOOR_FRAMES,
+    DOOR_SPREAD,
+    ECHO_SOUNDER,
     MAP,
     SONAR,
+    SONAR_WIDTH,
     VESSEL,
     Channel,
     Field,
@@ -106,12 +109,17 @@ class RangeSample:
 
 @dataclass(frozen=True)
 class VelocitySample:
-    """Velocity sample (3,), m/s: ``over`` 'water' in frame vessel, ``over`` 'ground' in map."""
+    """Velocity sample (3,), m/s: ``over`` 'water' in frame vessel, ``over`` 'ground' in map.
+
+    ``stated`` is the stated noise of velocity (m/s) and rate of turn (rad/s), 0 where unknown. The
+    message without covariance does not carry it, so samples are compared without it.
+    """
 
     stamp: int
     over: str
     velocity: FloatArray
     yaw_rate: float
+    stated: tuple[float, float] = field(default=(0.0, 0.0), compare=False)
 
     @property
     def topic(self) -> str:
@@ -161,7 +169,8 @@ class SonarScanSample:
     255.
 
     Beam i looks at ``angle_min`` + i ``angle_increment`` (rad about z of frame ``sonar``, 0 down,
-    to port positive); ``sweep_s`` is how long the sweep took.
+    to port positive); ``sweep_s`` is how long the sweep took. With ``stamped_at_end`` the stamp is
+    not that of the first ping, and pings have no times of their own.
     """
 
     topic: ClassVar = 'sonar/scan'
@@ -173,6 +182,7 @@ class SonarScanSample:
     min_range: float
     max_range: float
     sweep_s: float
+    stamped_at_end: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -401,7 +411,7 @@ INSTRUMENTS: tuple[Sensor[Sample], ...] = (
     _pressure('port', 'port_door_depth', 0.2, 10.0),
     _pressure('starboard', 'starboard_door_depth', 0.2, 10.0),
     _range(
-        'spread', DOOR_FRAMES['port'], 1.0, 'Acoustic distance from door to door, m.',
+        'spread', DOOR_SPREAD, 1.0, 'Acoustic distance from door to door, m.',
         ('door_sensor_node', 'nmea_in'), _READERS, 0.35, silence=ACOUSTIC_SILENCE_S,
         channel=_SPREAD, on_course=True,
     ),
@@ -413,7 +423,8 @@ INSTRUMENTS: tuple[Sensor[Sample], ...] = (
     ),
     # The width in the sonar's own plane, far behind the wing tips: no observable of the model.
     _range(
-        'opening_width', SONAR, None, "Horizontal opening as the sonar's operator reads it, m.",
+        'opening_width', SONAR_WIDTH, None,
+        "Horizontal opening as the sonar's operator reads it, m.",
         ('trawl_sonar_node',), ('view_node',), 0.02,
     ),
     Sensor(
@@ -480,12 +491,13 @@ INSTRUMENTS: tuple[Sensor[Sample], ...] = (
         ),
     ),
     _range(
-        'depth', VESSEL, 1.0, 'From the keel down to the seabed, m.', ('vessel_node', 'nmea_in'),
-        ('nmea_out', 'view_node', 'trial_node', 'discrepancy_node'), 0.12, least=-100.0,
-        on_course=True,
+        'depth', ECHO_SOUNDER, 1.0, 'From the keel down to the seabed, m.',
+        ('vessel_node', 'nmea_in'),
+        ('nmea_out', 'view_node', 'trial_node', 'discrepancy_node'), 0.12,
+        least=-100.0, on_course=True,
     ),
     _range(
-        'school', VESSEL, 1.0,
+        'school', ECHO_SOUNDER, 1.0,
         'From the keel down to the uppermost fish under her, m; infinite without any.',
         ('vessel_node',), ('view_node',), 0.12,
     ),

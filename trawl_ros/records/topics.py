@@ -8,6 +8,7 @@ Names are relative; a node in namespace ``trawl`` turns ``truth/winch`` into ``/
 from trawl_ros.records.registry import DOOR_FRAMES as DOOR_FRAMES
 from trawl_ros.records.registry import MAP as MAP
 from trawl_ros.records.registry import NAMESPACE as NAMESPACE
+from trawl_ros.records.registry import ODOM as ODOM
 from trawl_ros.records.registry import SONAR as SONAR
 from trawl_ros.records.registry import VESSEL as VESSEL
 from trawl_ros.records.registry import WINCH_NAMES as WINCH_NAMES
@@ -15,6 +16,7 @@ from trawl_ros.records.registry import Topic as Topic
 from trawl_ros.records.samples import INSTRUMENTS as INSTRUMENTS
 from trawl_ros.records.samples import PICTURES as PICTURES
 from trawl_ros.records.samples import RANGES as RANGES
+from trawl_ros.records.truth import SIDES
 
 _SIM = ('sim_node',)
 _SHOWN = ('view_node',)
@@ -135,6 +137,43 @@ ESTIMATES = (
     ),
 )  # fmt: skip
 
+WITH_COVARIANCE = '_with_covariance'
+"""End of the name of a topic that carries the covariance too."""
+
+_STATED = 'with the stated noise, as robot_localization takes it.'
+
+
+def _velocity_twin(over: str, frame: str) -> Topic:
+    return Topic(
+        f'vessel/velocity_{over}{WITH_COVARIANCE}', 'geometry_msgs/msg/TwistWithCovarianceStamped',
+        frame, 1.0, f'vessel/velocity_{over} {_STATED}', ('vessel_node',),
+    )  # fmt: skip
+
+
+def _depth_twin(place: str, node: str) -> Topic:
+    return Topic(
+        f'{place}/depth{WITH_COVARIANCE}', 'geometry_msgs/msg/PoseWithCovarianceStamped', MAP, 1.0,
+        f'{place}/pressure as z of a position, {_STATED}', (node,),
+    )  # fmt: skip
+
+
+TWINS = (
+    _velocity_twin('water', VESSEL),
+    _velocity_twin('ground', MAP),
+    *(_depth_twin(f'door/{side}', 'door_sensor_node') for side in SIDES),
+    _depth_twin('sonar', 'trawl_sonar_node'),
+    Topic(
+        'identification/coefficients', 'diagnostic_msgs/msg/DiagnosticArray', '', None,
+        'The estimate with its stamp: a status per coefficient with value, std, determined or not.',
+        _IDENTIFIED, latched=True,
+    ),
+    Topic(
+        'identification/innovations', 'diagnostic_msgs/msg/DiagnosticArray', '', None,
+        'A status per channel with innovation, its deviation, test ratio and unit.', _IDENTIFIED,
+    ),
+)  # fmt: skip
+"""Topics that say in another type what others say; a recorder has them where asked to."""
+
 COMMANDS = (
     Topic(
         'command/winch', 'sensor_msgs/msg/JointState', VESSEL, None,
@@ -160,21 +199,25 @@ CLOCK = Topic(
 
 TRANSFORMS = Topic(
     '/tf', 'tf2_msgs/msg/TFMessage', '', 10.0, 'Frames in map, where tf2_msgs is installed.',
-    ('sim_node', 'bag_player'), ('foxglove_node', 'operator'),
+    ('sim_node', 'nmea_in', 'bag_player'), ('foxglove_node', 'operator'),
 )  # fmt: skip
 
 SYNC = 'sync/progress'
 """Topic on which consumers report their progress; sources wait for the slowest one."""
 
 STATIC_TRANSFORMS = Topic(
-    '/tf_static', TRANSFORMS.type, '', None, 'Frames of others that stay, for viewers.',
-    heard_by=('foxglove_node',), latched=True,
+    '/tf_static', TRANSFORMS.type, '', None,
+    'Frames of sensors in the frame that they are fixed to, where tf2_msgs is installed.',
+    ('vessel_node', 'door_sensor_node', 'trawl_sonar_node', 'nmea_in'),
+    ('foxglove_node',), latched=True,
 )  # fmt: skip
 
 CONTRACT: tuple[Topic, ...] = (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS)
 """Topics that are recorded."""
 
-TOPICS: dict[str, Topic] = {topic.name: topic for topic in (*CONTRACT, CLOCK, TRANSFORMS)}
+TOPICS: dict[str, Topic] = {
+    topic.name: topic for topic in (*CONTRACT, *TWINS, CLOCK, TRANSFORMS, STATIC_TRANSFORMS)
+}
 
 
 def absolute(name: str, namespace: str = NAMESPACE) -> str:

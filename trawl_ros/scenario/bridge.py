@@ -1,12 +1,14 @@
 """Bridge of a trial: autopilot and autotrawl, with their instruments."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from trawl_ros.control.autopilot import Autopilot, AutopilotSettings
 from trawl_ros.control.autotrawl import Autotrawl
+from trawl_ros.control.winch_controller import WinchController
 from trawl_ros.core.geodesy import Datum
 from trawl_ros.instruments.errors.fault_plan import FaultPlan
 from trawl_ros.instruments.errors.faults import FaultPanel
@@ -36,10 +38,17 @@ class Bridge:
     ----------
     scenario
         Scenario with steps of autopilot and autotrawl.
+    winches
+        Makes a controller in place of that of the steps from the lengths (port, starboard), m.
     """
 
-    def __init__(self, scenario: Scenario) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        winches: Callable[[tuple[float, float]], WinchController] | None = None,
+    ) -> None:
         self._scenario = scenario
+        self._winches = winches
         made = scenario.instruments
         self._winch = WinchInstruments(made.winch, scenario.draws)
         self._vessel = VesselInstruments(
@@ -49,7 +58,7 @@ class Bridge:
         self._plan = FaultPlan(scenario.faults, FaultPanel(sensors))
         self._datum = Datum(made.vessel.datum_lat_deg, made.vessel.datum_lon_deg)
         self._autopilot = Autopilot(AutopilotSettings(), self._datum)
-        self._autotrawl: Autotrawl | None = None
+        self._autotrawl: WinchController | None = None
         self._steer: SteerRecord | None = None
         self._work: AutotrawlRecord | None = None
         self._given = scenario.start
@@ -100,8 +109,9 @@ class Bridge:
             self._autotrawl = None
         elif self._autotrawl is None:
             lengths = self._given.port_length, self._given.starboard_length
-            self._autotrawl = Autotrawl(settings, lengths)
-        else:
+            own = Autotrawl(settings, lengths)
+            self._autotrawl = own if self._winches is None else self._winches(lengths)
+        elif isinstance(self._autotrawl, Autotrawl) and self._winches is None:
             self._autotrawl.change(settings)
 
     def _observe_ship(self, truth: Truth) -> None:

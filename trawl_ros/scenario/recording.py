@@ -7,7 +7,9 @@ from trawl_ros.instruments.suite import InstrumentSuite
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.to_messages import sample_message
+from trawl_ros.messages.transforms import mounts_message, transforms_message
 from trawl_ros.messages.truth_to_messages import truth_messages
+from trawl_ros.records.frames import SPREAD_MOUNT, WIDTH_MOUNT, echo_sounder_mount
 from trawl_ros.records.topics import PICTURES
 from trawl_ros.scenario.run import Trial
 
@@ -28,6 +30,11 @@ def recorded_messages(trial: Trial) -> Iterator[tuple[int, list[TopicMessage]]]:
             messages += truth_messages(truth)
             if truth.stamp % SECOND == 0:
                 messages.append(gear_markers(trial.simulation.picture()))
+        if 'transforms' in scenario.record.record:
+            if truth.stamp == 0:
+                sounder = echo_sounder_mount(scenario.instruments.vessel.draught_m)
+                messages.append(mounts_message(0, (sounder, SPREAD_MOUNT, WIDTH_MOUNT)))
+            messages.append(transforms_message(truth))
         for topic, message in map(sample_message, map(sensor_effects, suite.observe(truth))):
             if ('pictures' if topic in PICTURES else 'instruments') in scenario.record.record:
                 messages.append((topic, message))

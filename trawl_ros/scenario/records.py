@@ -179,7 +179,8 @@ class ScenarioRecord(Record):
     steps: Annotated[tuple[StepRecord, ...], Field(min_length=1, max_length=1000)]
     truth_rate_hz: Annotated[float, Field(ge=0.1, le=MAX_TRUTH_HZ)] = MAX_TRUTH_HZ
     record: Annotated[
-        tuple[Literal['instruments', 'pictures', 'truth'], ...], Field(min_length=1, max_length=3)
+        tuple[Literal['instruments', 'pictures', 'truth', 'transforms'], ...],
+        Field(min_length=1, max_length=4),
     ] = ('instruments', 'pictures', 'truth')
 
     @model_validator(mode='after')

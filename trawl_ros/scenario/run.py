@@ -4,7 +4,9 @@ Node and command line share it, so a scenario gives the same data in both.
 """
 
 import math
+from collections.abc import Callable
 
+from trawl_ros.control.winch_controller import WinchController
 from trawl_ros.core.errors import ScenarioError
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.records.truth import Truth
@@ -52,6 +54,8 @@ class Trial:
         Model of the plant; by default built from the scenario.
     stamp
         Time of the start, ns.
+    winches
+        Makes a controller of the winches in place of that of the steps, as `Bridge` takes it.
 
     Attributes
     ----------
@@ -72,7 +76,12 @@ class Trial:
     """
 
     def __init__(
-        self, scenario: Scenario, *, model: GearModel | None = None, stamp: int = 0
+        self,
+        scenario: Scenario,
+        *,
+        model: GearModel | None = None,
+        stamp: int = 0,
+        winches: Callable[[tuple[float, float]], WinchController] | None = None,
     ) -> None:
         self.scenario = scenario
         self.model = build_model(scenario.plant) if model is None else model
@@ -96,7 +105,8 @@ class Trial:
         self._steps_per_truth = steps
         self._truths = 1 + math.floor(self.duration_s * scenario.record.truth_rate_hz + 1e-6)
         self._given = 0
-        self._bridge = Bridge(scenario)
+        self._winches = winches
+        self._bridge = Bridge(scenario, winches)
 
     @property
     def time_s(self) -> float:
@@ -107,7 +117,7 @@ class Trial:
         """Return to the start; the same truth is repeated."""
         self.simulation.reset()
         self._given = 0
-        self._bridge = Bridge(self.scenario)
+        self._bridge = Bridge(self.scenario, self._winches)
 
     def step(self) -> Truth | None:
         """Advance by one period of the truth.

@@ -1,5 +1,6 @@
 """Command to ship and winches."""
 
+import math
 from dataclasses import dataclass
 
 from trawl_ros.core.errors import ScenarioError
@@ -11,6 +12,7 @@ class Command:
     """Command to ship and winches.
 
     Warp lengths are in m, speed through the water in m/s, rate of turn in rad/s, positive to port.
+    A winch runs at no more than its ``winch_speeds`` (port, starboard), m/s.
 
     Raises
     ------
@@ -28,6 +30,7 @@ class Command:
     starboard_length: float
     speed: float
     turn_rate: float = 0.0
+    winch_speeds: tuple[float, float] = (math.inf, math.inf)
 
     def __post_init__(self) -> None:
         lengths = self.port_length, self.starboard_length

@@ -74,8 +74,13 @@ class Winch:
     length: float
     speed: float
 
-    def advanced(self, limits: WinchRecord, length: float, dt: float) -> 'Winch':
-        """Return the winch after ``dt`` s of paying out or hauling towards a commanded length."""
+    def advanced(
+        self, limits: WinchRecord, length: float, dt: float, most_speed: float = math.inf
+    ) -> 'Winch':
+        """Return the winch after ``dt`` s of paying out or hauling towards a commanded length.
+
+        It runs at no more than ``most_speed`` (m/s).
+        """
         left = length - self.length
         most = limits.max_acceleration_m_s2
         if abs(left) <= most * dt**2 and abs(self.speed) <= most * dt:
@@ -84,6 +89,6 @@ class Winch:
         side = math.copysign(1.0, left) if left else 0.0
         way = 2 * abs(left) - side * self.speed * dt
         root = math.sqrt((0.5 * most * dt) ** 2 + most * max(way, 0.0))
-        wanted = side * min(limits.max_speed_m_s, root - 0.5 * most * dt)
+        wanted = side * min(limits.max_speed_m_s, most_speed, root - 0.5 * most * dt)
         speed = _approach(self.speed, wanted, most * dt)
         return Winch(self.length + 0.5 * (self.speed + speed) * dt, speed)

@@ -180,10 +180,10 @@ class Simulation:
         surface = self.model.water.surface_current
         ship = now.ship.advanced(gear.ship, wanted.speed, wanted.turn_rate, surface, dt)
         ship = ship.heaved(*self.sea.heave.at(self._seconds(now.stamp) + dt))
-        port, starboard = now.winches
+        (port, starboard), speeds = now.winches, wanted.winch_speeds
         return ship, (
-            port.advanced(gear.winch, wanted.port_length, dt),
-            starboard.advanced(gear.winch, wanted.starboard_length, dt),
+            port.advanced(gear.winch, wanted.port_length, dt, speeds[0]),
+            starboard.advanced(gear.winch, wanted.starboard_length, dt, speeds[1]),
         )
 
     def _advanced(self, now: Instant, span: int, halvings: int) -> Instant:

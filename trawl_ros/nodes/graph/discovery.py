@@ -2,12 +2,17 @@
 
 import os
 from collections.abc import MutableMapping
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError
+from importlib.metadata import version as version_of
 from pathlib import Path
 
 from trawl_ros.core.resources import share_path
 
 VARIABLES = ('FASTDDS_DEFAULT_PROFILES_FILE', 'FASTRTPS_DEFAULT_PROFILES_FILE')
-"""Of newer and of older versions."""
+"""Of Fast DDS 3 (Kilted and later) and of Fast DDS 2 (Jazzy), which knows only its own."""
+
+FIRST_RCLPY_OF_FAST_DDS_3 = 8
 
 FILES = ('DEFAULT_FASTDDS_PROFILES.xml', 'DEFAULT_FASTRTPS_PROFILES.xml')
 """Profiles that Fast DDS takes from the working directory."""
@@ -35,4 +40,23 @@ def announce_often(
     ):
         return
     profile = str(share_path('config', 'dds', 'announcements.xml'))
-    environment.update(dict.fromkeys(VARIABLES, profile))
+    environment.update(dict.fromkeys(variables(_rclpy_version()), profile))
+
+
+def variables(version: str) -> tuple[str, ...]:
+    """Return the variables that the Fast DDS beside a version of rclpy reads without a warning.
+
+    Both are returned for a version that is not known.
+    """
+    major = version.partition('.')[0]
+    if not major.isdigit():
+        return VARIABLES
+    return VARIABLES[:1] if int(major) >= FIRST_RCLPY_OF_FAST_DDS_3 else VARIABLES[1:]
+
+
+def _rclpy_version() -> str:
+    # A full ROS 2 calls it rclpy, the package index ros-rclpy.
+    for name in ('rclpy', 'ros-rclpy'):
+        with suppress(PackageNotFoundError):
+            return version_of(name)
+    return ''

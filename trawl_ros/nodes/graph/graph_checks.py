@@ -8,7 +8,14 @@ from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
-from trawl_ros.records.topics import CLOCK, COMMANDS, SYNC, find_topic
+from trawl_ros.records.topics import (
+    CLOCK,
+    COMMANDS,
+    STATIC_TRANSFORMS,
+    SYNC,
+    TRANSFORMS,
+    find_topic,
+)
 
 OF_ANY_GRAPH = {SYNC, *(topic.name for topic in COMMANDS)}
 """Topics that a graph may do without, while another ship's graph has them."""
@@ -76,7 +83,11 @@ def _ends(full: str) -> set[str]:
     return {'/'.join(parts[first:]) for first in range(len(parts))}
 
 
-SHARED = ('/diagnostics', SYNC, *(topic.name for topic in COMMANDS))
+SHARED = (
+    '/diagnostics',
+    SYNC,
+    *(topic.name for topic in (*COMMANDS, TRANSFORMS, STATIC_TRANSFORMS)),
+)
 """Topics on which several may speak."""
 
 

@@ -19,6 +19,7 @@ from trawl_ros.core.errors import MessageError, TrawlError
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import SENTENCE
 from trawl_ros.messages.cdr import serialize
+from trawl_ros.messages.transforms import rename_frames
 from trawl_ros.nodes.graph.graph_checks import (
     SHARED,
     of_one_node,
@@ -72,6 +73,8 @@ class ConnectedNode(Node):
         Turns of its callbacks.
     exit_code : int or None
         Set by `end`; whoever spins the node then stops.
+    frame_names : dict of str to str
+        Published names of the frames that have another one than their own.
     """
 
     def __init__(self, name: str, **kwargs: Any) -> None:
@@ -83,6 +86,7 @@ class ConnectedNode(Node):
         self.turns = Turns()
         super().__init__(name, **kwargs)
         self.exit_code: int | None = None
+        self.frame_names: dict[str, str] = {}
         self._senders: dict[str, Publisher] = {}
         self._listeners: dict[str, Listener] = {}
 
@@ -113,6 +117,8 @@ class ConnectedNode(Node):
 
     def send(self, topic: str, message: Any) -> None:
         """Publish a message on an advertised topic."""
+        if self.frame_names:
+            rename_frames(message, self.frame_names)
         self.send_bytes(topic, serialize(message))
 
     def send_bytes(self, topic: str, data: bytes) -> None:

@@ -22,6 +22,7 @@ from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status, diagnostic_array
 from trawl_ros.nodes.graph.graph_checks import clock_status, connection_problems, elsewhere
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS, ConnectedNode
+from trawl_ros.nodes.runtime.frames import frame_specs, published_names
 from trawl_ros.nodes.runtime.incoming import (
     error_of_program,
 )
@@ -123,6 +124,8 @@ class TrawlNode(ConnectedNode):
     ----------
     parameters : Parameters
         The node's declared parameters.
+    frames : Parameters
+        Those for the names of its frames.
     real_time_factor : RealTimeFactor
         Newest stamps of its data.
 
@@ -144,12 +147,18 @@ class TrawlNode(ConnectedNode):
         self.real_time_factor = RealTimeFactor()
         self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._said: dict[str, tuple[int, str]] = {}
-        self.parameters = Parameters(self, self.SPECS, self.objection, self.parameter_changed)
+        self.parameters = self.declare_specs(self.SPECS)
+        self.frames = self.declare_specs(frame_specs(name))
+        self.frame_names = published_names(name, self.frames)
         self.advertise(DIAGNOSTICS)
         # Its period changes after the greeting. Cancelled, a timer that an executor has queued
         # already would raise there.
         self._greet_until: float | None = time.monotonic() + DIAGNOSTICS_PERIOD_S
         self._reporter = self.every(GREETING_S, self._report)
+
+    def declare_specs(self, specs: Sequence[Spec]) -> Parameters:
+        """Declare parameters."""
+        return Parameters(self, specs, self.objection, self.parameter_changed)
 
     def objection(self, name: str, value: Any) -> str | None:
         """Return an objection to a live parameter's value; None without one."""

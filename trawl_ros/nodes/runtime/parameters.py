@@ -18,11 +18,15 @@ from rclpy.parameter import Parameter
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.nodes.runtime.connected_node import ConnectedNode
+from trawl_ros.records.frames import FRAME_SENTENCES
 
 FIXED = 'read at the start; restart the node to change it'
 
 OWN_TO_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')
 """Beginnings of the names of parameters that every node has from ROS itself."""
+
+OF_FRAMES = ('publish_tf', *(f'{frame}_frame' for frame in FRAME_SENTENCES))
+"""Parameters of frames, which one file gives to all nodes of a ship."""
 
 
 class ParameterError(TrawlError):
@@ -234,7 +238,7 @@ def misspelt(node: Node) -> list[str]:
     known = [name for name in node._parameters if not name.startswith(OWN_TO_ROS)]
     found = []
     for name in unread:
-        if not name.startswith(OWN_TO_ROS):
+        if name not in OF_FRAMES and not name.startswith(OWN_TO_ROS):
             close = get_close_matches(name, known, n=1)
             meant = close[0] if close else f'one of {", ".join(sorted(known))}'
             found.append(f'parameter {name}: this node has none of that name; expected {meant}')
