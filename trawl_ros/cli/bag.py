@@ -10,7 +10,7 @@ from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import SUFFIX, repair_bag
 from trawl_ros.bags.sentence_log import SentenceLog, write_sentence_log
 from trawl_ros.cli.bag_tables import check_as_json, info_as_json, print_check, print_info
-from trawl_ros.cli.options import BAG, FOLDER, NAMESPACE_OPTION, Number
+from trawl_ros.cli.options import BAG, FOLDER, NAMESPACE_OPTION, NEW_BAG, Number
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console
 from trawl_ros.core.errors import BagError
@@ -88,7 +88,7 @@ def check(
 
 @command.command('export')
 @click.argument('bag', type=BAG)
-@click.option('--out', required=True, type=BAG, help='New folder; with --as, new file.')
+@click.option('--out', required=True, type=NEW_BAG, help='New folder; with --as, new file.')
 @click.option(
     '--topic',
     'topics',
