@@ -47,7 +47,7 @@ unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 unexport PYTHONDONTWRITEBYTECODE
 
 help:
-	@echo 'make demo       tow a sea trial through the ROS graph, replay it, refit: $(DEMO)/'
+	@echo 'make demo       a synthetic trial through the ROS graph, replayed, refitted, repaired: $(DEMO)/'
 	@echo 'make check      style, types, imports and the quick tests'
 	@echo 'make test       style, types and all tests but the long ones'
 	@echo 'make test-slow  the long tests: commands that take minutes among them'
