@@ -16,7 +16,7 @@ class RecordedBag(click.Path):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         """Return the path."""
-        return packaged_bag(super().convert(value, param, ctx))
+        return packaged_bag(Path(str(super().convert(value, param, ctx))))
 
 
 SCENARIO = click.Path(path_type=Path)
