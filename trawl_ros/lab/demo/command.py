@@ -232,7 +232,7 @@ def command(out: Path, scenario: Path | None, full: bool, diagnosis: bool) -> No
         return
     found = None
     if diagnosis:
-        steps.say('steady states with an effect the model lacks, and their diagnosis', 40)
+        steps.say('states of a log that errs, made without towing in time, diagnosed', 40)
         with ProgressDisplay(console) as display:
             found = diagnose_short_tows(folder.hidden, display)
     lines = (

@@ -35,7 +35,8 @@ def finding_lines(found: Finding) -> tuple[str, str, str]:
     """Return what the model missed, what was named, and what is left with the repaired gear."""
     (effect,) = found.numbers['effects']
     values = ', '.join(
-        f'{name} {own["value"]:.3g} (95 %: {own["low"]:.3g} to {own["high"]:.3g}) {own["unit"]}'
+        f'{name} {own["value"]:.3g} (95 %: {own["low"]:.3g} to {own["high"]:.3g}) '
+        f'{own["unit"]}'.rstrip()
         for name, own in effect['parameters'].items()
     )
     made, smallest = found.made.log_error_m_s, found.smallest_m_s
