@@ -1,11 +1,11 @@
-# `make demo` and the tests need Python 3.10 to 3.13, make and a package index; what they
+# `make demo` and the tests need Python 3.11 to 3.13, make and a package index; what they
 # install goes into .venv and is done once.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help demo check quick test tests test-slow test-view study endurance coverage docs promises fuzz lint lock clean
+.PHONY: help demo check quick test tests test-slow test-view study endurance coverage docs wheel promises fuzz lint lock clean
 
 # Any of these may be given on the command line: make PYTHON=python3.12 test
 PYTHON ?=
@@ -54,7 +54,7 @@ unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 unexport PYTHONDONTWRITEBYTECODE
 
 help:
-	@echo 'make demo       tow a sea trial through the ROS graph, replay it, refit: $(DEMO)/'
+	@echo 'make demo       a synthetic trial through the ROS graph, replayed, refitted, repaired: $(DEMO)/'
 	@echo 'make check      style, types, imports and the quick tests'
 	@echo 'make test       style, types and all tests but the long ones'
 	@echo 'make test-slow  the long tests: commands that take minutes among them'
@@ -65,6 +65,7 @@ help:
 	@echo 'make lint       style, types, layers and prose only'
 	@echo 'make coverage   the tests of make test, and how much of the package they run'
 	@echo 'make docs       build the site of guides and reference: $(SITE)/'
+	@echo 'make wheel      build a wheel and an sdist, to install elsewhere: dist/'
 	@echo 'make promises   run every command of the documents and write docs/promises.md'
 	@echo 'make lock       choose the newest allowed versions and write requirements.lock'
 	@echo 'make clean      remove .venv, out/ and what builds and tools leave behind'
@@ -115,6 +116,12 @@ docs: $(VENV)/ready
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict --site-dir $(SITE)
 	@echo '$(SITE)/index.html is written'
 
+# The wheel is built from the sdist, so that both are complete.
+wheel: $(VENV)/ready
+	@rm -rf dist
+	@$(UV) build --quiet --no-build-isolation --python $(BIN)/python --out-dir dist
+	@ls dist/*
+
 lint: $(VENV)/ready
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
@@ -123,7 +130,7 @@ lint: $(VENV)/ready
 	@$(BIN)/pymarkdown scan --recurse $(patsubst %,--exclude '%',$(PROSE)) docs *.md
 
 lock: $(VENV)/ready
-	@$(UV) pip compile --quiet --upgrade --generate-hashes --universal --python-version 3.10 \
+	@$(UV) pip compile --quiet --upgrade --generate-hashes --universal --python-version 3.11 \
 	    --extra ros --extra test --custom-compile-command 'make lock' \
 	    --output-file requirements.lock setup.py
 	@echo 'requirements.lock is written; the next make installs it'
@@ -157,8 +164,8 @@ $(VENV)/locked: requirements.lock | $(VENV)/bin/python
 	@touch $@
 
 $(VENV)/bin/python:
-	@for python in $(or $(PYTHON),python3 python3.12 python3.11 python3.13 python3.10); do \
-	    if "$$python" -c 'import sys; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))' \
+	@for python in $(or $(PYTHON),python3 python3.12 python3.11 python3.13); do \
+	    if "$$python" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' \
 	        2>/dev/null; then \
 	        echo ".venv: $$("$$python" --version)"; \
 	        "$$python" -m venv --clear $(VENV) && exit; \
@@ -168,7 +175,7 @@ $(VENV)/bin/python:
 	        exit 1; \
 	    fi; \
 	done; \
-	echo 'found no Python from 3.10 to 3.13 among:' \
-	    '$(or $(PYTHON),python3 python3.12 python3.11 python3.13 python3.10);' \
+	echo 'found no Python from 3.11 to 3.13 among:' \
+	    '$(or $(PYTHON),python3 python3.12 python3.11 python3.13);' \
 	    'name one with make PYTHON=...' >&2; \
 	exit 1

@@ -6,7 +6,7 @@ makes them, after which `nox -R` needs no network.
 
 import nox
 
-PYTHONS = ('3.10', '3.11', '3.12', '3.13')
+PYTHONS = ('3.11', '3.12', '3.13')
 
 nox.needs_version = '>=2024.10.9'
 nox.options.default_venv_backend = 'uv'

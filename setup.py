@@ -130,7 +130,7 @@ DOCS = [
 PEERS = [
     'moordyn>=2.7,<2.8',
     'MoorPy>=1.3,<1.4',
-    'trawlkit>=1.1,<1.2; python_version >= "3.11"',
+    'trawlkit>=1.1,<1.2',
 ]
 
 # For people who look on, of whom aboard there are none: a small library and one of 170 MB.
@@ -155,7 +155,7 @@ setup(
     license='Apache-2.0',
     maintainer='trawl_ros developers',
     maintainer_email='trawl_ros@example.org',
-    python_requires='>=3.10',
+    python_requires='>=3.11',
     packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
     package_data={PACKAGE: ['py.typed', '**/templates/*.j2']},
     data_files=[

@@ -2,12 +2,8 @@
 
 import ast
 import re
+import tomllib
 from pathlib import Path
-
-try:
-    import tomllib
-except ModuleNotFoundError:  # Python 3.10
-    import tomli as tomllib
 
 ROOT = Path(__file__).parents[1]
 DESIGN = ROOT / 'docs' / 'design.md'

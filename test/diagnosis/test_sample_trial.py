@@ -1,4 +1,4 @@
-"""The sea trial that comes with the package, cut off: nothing is missing in it."""
+"""The synthetic trial that comes with the package, cut off: nothing is missing in it."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The sea trial that comes with the package, refitted: what the whole is judged by."""
+"""The synthetic trial that comes with the package, refitted: what the whole is judged by."""
 
 import pytest
 

@@ -46,6 +46,12 @@ def clean_environment(folder: Path) -> dict[str, str]:
 
 
 @pytest.fixture(scope='session')
+def new_shell() -> Callable[[Path], dict[str, str]]:
+    """The environment of a new shell, by a folder of its own."""
+    return clean_environment
+
+
+@pytest.fixture(scope='session')
 def colcon() -> Callable[..., str]:
     """Run colcon with the Python of this test run, since what it installs runs with the same."""
     beside = Path(sys.executable).parent

@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 OPTIONAL = {'websockets', 'rerun', 'rerun_cli', 'moordyn', 'moorpy', 'trawlkit', 'tf2_msgs'}
 """Of extras; each is looked for where it is used, and its absence is a sentence."""
 
-WITH_ANOTHER = {'pydantic_core': 'pydantic', 'typing_extensions': 'pydantic', '_typeshed': ''}
+WITH_ANOTHER = {'pydantic_core': 'pydantic', '_typeshed': ''}
 """Modules that come with a distribution, or for type checkers alone."""
 
 BLOCKED = """

@@ -12,6 +12,7 @@ from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.core.resources import packaged_bag
 from trawl_ros.diagnosis.diagnosis import Diagnosis, unread
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.repair import source
@@ -62,7 +63,7 @@ def identify(
     Parameters
     ----------
     bags
-        Folders or files.
+        Folders or files, or names of sample bags of the package.
     gear
         Gear of the model: record, file or name.
     out
@@ -124,7 +125,7 @@ def identify(
     known = None if truth is None else true_coefficients(truth)
     options = estimator_options(prior=prior, net=net)
     record = _gear(gear)
-    paths = [Path(bag) for bag in bags]
+    paths = [packaged_bag(bag) for bag in bags]
     recordings = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
     _note(recordings, on_note)
     require_distinct(recordings)
@@ -212,7 +213,7 @@ def diagnose(
     if out is not None:
         empty_folder(Path(out), force=force)
     record = _gear(gear)
-    paths = [Path(bag) for bag in (*baseline, *bags)]
+    paths = [packaged_bag(bag) for bag in (*baseline, *bags)]
     recordings = read_tows(paths, record, namespace, scheduler=scheduler, on_progress=on_progress)
     _note(recordings, on_note)
     require_distinct(recordings)

@@ -18,6 +18,7 @@ from trawl_ros.cli.options import (
     FORCE_OPTION,
     GEAR_OPTION,
     NAMESPACE_OPTION,
+    NEW_BAG,
     UNITS_OPTION,
     Number,
 )
@@ -156,7 +157,7 @@ def compare(
 
 @command.command('export')
 @click.argument('bag', type=BAG)
-@click.option('--out', required=True, type=BAG, help='New folder; with --as, new file.')
+@click.option('--out', required=True, type=NEW_BAG, help='New folder; with --as, new file.')
 @click.option(
     '--topic',
     'topics',

@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import asdict
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,7 @@ def summary_line(path: Path, count: int, start: int | None, end: int | None) -> 
     """Summarise the content of a bag and its time span in a line."""
     if start is None or end is None:
         return f'{path}: no messages'
-    begin = datetime.fromtimestamp(start / SECOND, timezone.utc)
+    begin = datetime.fromtimestamp(start / SECOND, UTC)
     minutes = (end - start) / SECOND / 60
     return f'{path}: {count} messages in {minutes:.1f} min from {begin:%F %T} UTC'
 

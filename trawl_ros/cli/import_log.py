@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from trawl_ros.bags.logs.import_log import import_log
-from trawl_ros.cli.options import BAG
+from trawl_ros.cli.options import NEW_BAG
 
 
 @click.command('import-log')
@@ -17,7 +17,7 @@ from trawl_ros.cli.options import BAG
     help='YAML file that assigns columns or sentences to topics, or a name: door_test_haul_log, '
     'nmea, tv80.',
 )
-@click.option('--out', required=True, type=BAG, help='New folder for the bag.')
+@click.option('--out', required=True, type=NEW_BAG, help='New folder for the bag.')
 @click.option(
     '--leave-out',
     is_flag=True,

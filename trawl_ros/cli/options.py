@@ -8,11 +8,22 @@ import click
 
 from trawl_ros.core.display_units import METRIC, DisplayUnits, parse_units, parse_value
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.resources import packaged_bag
 from trawl_ros.records.topics import NAMESPACE
 from trawl_ros.records.towing_limits import LIMITS
 
+
+class RecordedBag(click.Path):
+    """Bag that exists: a path, or the name of a sample bag of the package."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """Return the path."""
+        return packaged_bag(Path(str(super().convert(value, param, ctx))))
+
+
 SCENARIO = click.Path(path_type=Path)
-BAG = click.Path(path_type=Path)
+BAG = RecordedBag(path_type=Path)
+NEW_BAG = click.Path(path_type=Path)
 FILE = click.Path(path_type=Path, dir_okay=False)
 FOLDER = click.Path(path_type=Path, file_okay=False)
 

@@ -9,13 +9,13 @@ from rich.table import Table
 
 from trawl_ros.api import tows
 from trawl_ros.cli.interruption import INTERRUPTED, Interruption
-from trawl_ros.cli.options import BAG, SCENARIO
+from trawl_ros.cli.options import NEW_BAG, SCENARIO
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 
 
 @click.command('tow')
 @click.argument('scenario', type=SCENARIO)
-@click.option('--out', required=True, type=BAG, help='New folder for the bag.')
+@click.option('--out', required=True, type=NEW_BAG, help='New folder for the bag.')
 def command(scenario: Path, out: Path) -> None:
     """Tow SCENARIO and record it as a bag. The same seed gives the same bytes."""
     console = error_console()

@@ -1,9 +1,9 @@
 """Dead reckoning of the ship for the autopilot: heading, position and current from samples."""
 
 import math
+from typing import assert_never
 
 import numpy as np
-from typing_extensions import assert_never
 
 from trawl_ros.control.low_pass import LowPass
 from trawl_ros.core.arrays import FloatArray

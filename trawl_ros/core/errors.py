@@ -102,8 +102,8 @@ class NoSteadyState(TrawlError):
     """Gear without usable steady state at the wanted warp length and speed.
 
     ``reason`` is the reason in a word; if a root was found, its first fault. ``remedy`` is a
-    sentence that names the command for advice, if there is one. Commands, nodes and, from Python
-    3.11 on, tracebacks print it below the message.
+    sentence that names the command for advice, if there is one. Commands, nodes and tracebacks
+    print it below the message.
 
     Examples
     --------
@@ -121,7 +121,7 @@ class NoSteadyState(TrawlError):
         self.reason: Refusal = reason
         self.remedy = remedy
         if remedy:
-            self.__notes__ = [remedy]
+            self.add_note(remedy)
 
 
 def sentence_of(reason: Exception) -> str:

@@ -81,6 +81,8 @@ def private_folder() -> Path | None:
 
 
 def _private_path() -> Path | None:
+    if not hasattr(os, 'getuid'):  # Windows, whose temporary folder is the user's own
+        return None
     try:
         place = Path(tempfile.gettempdir())
         # `tempfile` falls back to the working folder, where users expect no such folder.

@@ -45,7 +45,9 @@ def share_path(*parts: str) -> Path:
 
 
 def packaged(path: str | Path, folder: str, error: type[TrawlError] = TrawlError) -> Path:
-    """Find a YAML file by path, or by its name in ``config/<folder>``.
+    """Find a YAML file by path, or by its name in ``config/<folder>``, with or without ``.yaml``.
+
+    The scenario of the sample bag lies beside it, in ``bags``.
 
     Raises
     ------
@@ -53,12 +55,33 @@ def packaged(path: str | Path, folder: str, error: type[TrawlError] = TrawlError
         Of the type ``error``, if a name is not one of the package.
     """
     path = Path(path)
-    if path.suffix in ('.yaml', '.yml') or path.is_file() or len(path.parts) != 1:
+    if path.is_file() or len(path.parts) != 1:
         return path
+    is_yaml = path.suffix in ('.yaml', '.yml')
+    name = f'{path.stem if is_yaml else path}.yaml'
+    if folder == 'scenarios' and (sample := _sample(name)):
+        return sample
     try:
-        return share_path('config', folder, f'{path}.yaml')
+        return share_path('config', folder, name)
     except TrawlError as reason:
+        if is_yaml:  # the caller says that there is no such file
+            return path
         raise error(f'{path}: neither a file nor a name of the package; {reason}') from reason
+
+
+def packaged_bag(path: str | Path) -> Path:
+    """Find a bag by path, or a sample bag of the package by its name."""
+    path = Path(path)
+    sample = None if path.exists() or len(path.parts) != 1 else _sample(path.name)
+    return sample or path
+
+
+def _sample(name: str) -> Path | None:
+    """Return a file or folder of the package's ``bags``, None if there is none of this name."""
+    try:
+        return share_path('bags', name)
+    except TrawlError:
+        return None
 
 
 def _beside(module: Path) -> Path | None:

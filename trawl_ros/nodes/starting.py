@@ -5,6 +5,7 @@ Imports take seconds, and Python would answer SIGINT with a traceback out of the
 
 import os
 import signal
+import sys
 from collections.abc import Callable
 from functools import partial
 from importlib import import_module
@@ -26,8 +27,22 @@ def start(node: str) -> int:
     """
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _end)
-    main: Callable[[], int] = import_module(f'trawl_ros.nodes.{node}').main
+    try:
+        main: Callable[[], int] = import_module(f'trawl_ros.nodes.{node}').main
+    except ImportError as reason:
+        if not _is_of_ros(reason):
+            raise
+        from trawl_ros.core.errors import RosMissing
+
+        sys.stderr.write(f'Error: {RosMissing(node, reason)}\n')
+        return 1
     return main()
+
+
+def _is_of_ros(reason: ImportError) -> bool:
+    """Return True if rclpy or a package of messages is missing."""
+    package = (reason.name or '').partition('.')[0]
+    return package == 'rclpy' or package.endswith(('_msgs', '_interfaces', '_srvs'))
 
 
 def _end(number: int, frame: FrameType | None) -> None:

@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import date, datetime, timezone
+from datetime import UTC, date, datetime
 
 from trawl_ros.core.stamps import DAY_NS
 from trawl_ros.core.time import SECOND
@@ -146,7 +146,7 @@ def write_time(stamp: int, field: SentenceField) -> str:
     decimals = len(form.partition('.')[2])
     step = SECOND // 10**decimals
     stamp -= stamp % step
-    when = datetime.fromtimestamp(stamp // SECOND, timezone.utc)
+    when = datetime.fromtimestamp(stamp // SECOND, UTC)
     if field.date:
         for sign, code in (('yyyy', '%Y'), ('yy', '%y'), ('mm', '%m'), ('dd', '%d')):
             form = form.replace(sign, when.strftime(code))

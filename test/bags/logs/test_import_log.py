@@ -1,7 +1,7 @@
 """CSV logs become bags by a mapping; mistakes in either are named with line and column."""
 
 import math
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -87,7 +87,7 @@ def samples(path):
 
 
 def seconds(*when):
-    return int(datetime(*when, tzinfo=timezone.utc).timestamp()) * 1_000_000_000
+    return int(datetime(*when, tzinfo=UTC).timestamp()) * 1_000_000_000
 
 
 def test_units_and_clock_are_turned_into_si_and_utc(run):

@@ -1,7 +1,7 @@
 """Tables of other loggers: clocks, separators, decimal commas, long tables, rows left out."""
 
 import math
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 
 import pytest
 
@@ -12,7 +12,7 @@ from trawl_ros.core.errors import LogError
 from trawl_ros.messages.from_messages import to_sample
 
 PRESSURE = 'topics: {sonar/pressure: {fields: {pressure: {column: p, unit: bar}}}}\n'
-AT = int(datetime(2026, 8, 1, 18, 38, 51, tzinfo=timezone.utc).timestamp()) * 10**9
+AT = int(datetime(2026, 8, 1, 18, 38, 51, tzinfo=UTC).timestamp()) * 10**9
 
 
 @pytest.fixture

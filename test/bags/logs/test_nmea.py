@@ -1,7 +1,7 @@
 """Logs of NMEA 0183 become bags: who says what, when it was so, and what is left out."""
 
 import math
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -25,7 +25,7 @@ def sentence(content):
 
 
 def at(*when):
-    return int(datetime(2026, 8, 1, *when, tzinfo=timezone.utc).timestamp()) * SECOND
+    return int(datetime(2026, 8, 1, *when, tzinfo=UTC).timestamp()) * SECOND
 
 
 RMC = 'GPRMC,103851.00,A,5730.5000,N,15215.2500,W,3.9,090.0,010826,,,A'

@@ -5,7 +5,7 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, replace
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from hashlib import sha256
 from pathlib import Path
 
@@ -142,7 +142,7 @@ def log_scoring(
     asked = [row for section in sections for row in section.rows if row.target is not None]
     source = Path(rules.__file__).read_bytes()
     line = {
-        'time': datetime.now(timezone.utc).isoformat(timespec='seconds'),
+        'time': datetime.now(UTC).isoformat(timespec='seconds'),
         'version': __version__,
         'rules_sha256': sha256(source).hexdigest(),
         'diagnosis_sha256': rules_hash(),

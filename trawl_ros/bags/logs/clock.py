@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from datetime import date, datetime, timedelta, timezone
+from datetime import UTC, date, datetime, timedelta
 from decimal import Decimal, InvalidOperation
 from typing import Annotated, Literal
 from zoneinfo import ZoneInfo
@@ -167,7 +167,7 @@ class ClockReader:
         except ValueError:
             raise ValueError(f'a time as {form}') from None
         if time.tzinfo is not None:
-            return _nanoseconds(time.astimezone(timezone.utc).replace(tzinfo=None))
+            return _nanoseconds(time.astimezone(UTC).replace(tzinfo=None))
         if self._clock.date is None:
             return self._to_utc(_nanoseconds(time))
         return self._to_utc(self._on_its_day(time))

@@ -4,7 +4,6 @@ A database is read without its ``metadata.yaml``; another module compares the tw
 """
 
 import sqlite3
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import closing, suppress
@@ -136,8 +135,7 @@ class Database:
         path = quote(str(self.path.resolve()))
         database = sqlite3.connect(f'file:{path}?mode=ro{immutable}', uri=True)
         database.execute('PRAGMA trusted_schema = OFF')
-        if sys.version_info >= (3, 11):
-            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, CHUNK_BYTES.value)
+        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, CHUNK_BYTES.value)
         # Nothing that the file brings is executed: only plain columns of tables are read.
         database.set_authorizer(_authorise)
         left = iter(range((BAG_OPERATIONS.value + 20 * self._size) // _STEPS))

@@ -3,7 +3,7 @@
 import json
 import os
 from collections.abc import Mapping, Sequence
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
@@ -83,7 +83,7 @@ class LogBook:
             If it cannot be written.
         """
         line: dict[str, object] = {
-            'time': datetime.now(timezone.utc).isoformat(timespec='milliseconds'),
+            'time': datetime.now(UTC).isoformat(timespec='milliseconds'),
             'event': event,
             'stamp_ns': stamp,
             'who': who,

@@ -24,6 +24,8 @@ from trawl_ros.estimation.report.motion import motion_lines, motion_table
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.lab.demo.folder import DemoFolder
 from trawl_ros.lab.demo.hidden import hidden_effect
+from trawl_ros.lab.demo.short_tows import diagnose_short_tows
+from trawl_ros.lab.demo.summary import finding_lines, refitted_line
 from trawl_ros.lab.running.chain import start_chain, stop_chain
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes
@@ -41,6 +43,23 @@ from trawl_ros.report.style import DPI
 from trawl_ros.scenario.scenario import Scenario, load_scenario, true_coefficients
 from trawl_ros.sentences.table import load_tables
 from trawl_ros.view.bags import TowBags
+
+if TYPE_CHECKING:
+    from trawl_ros.lab.running.monitor import Monitor
+
+
+@dataclass
+class Steps:
+    """Steps of the demo, each announced with about how long it takes on two idle cores."""
+
+    console: Console
+    total: int
+    number: int = 0
+
+    def say(self, what: str, about_s: float) -> None:
+        """Announce the next step."""
+        self.number += 1
+        self.console.print(f'{self.number} of {self.total}: {what}, about {about_s:g} s')
 
 
 def load_result(folder: Path) -> dict[str, Any]:
@@ -104,10 +123,9 @@ def _percent(value: float | None) -> str:
     return '–' if value is None else f'{100.0 * value:.1f} %'
 
 
-if TYPE_CHECKING:
-    from trawl_ros.lab.running.monitor import Monitor
-
 LOOK_S = 0.2
+PAGES = ('history.png', 'gear.png', 'report.html')
+HIDDEN_PAGES = ('hidden/report.html', 'hidden/gap.png', 'hidden/model.yaml')
 SYSTEMS = ('marport', 'scantrol', 'ship')
 
 
@@ -131,38 +149,52 @@ class TopicCounts:
 @click.command('demo')
 @click.option('--out', required=True, type=FOLDER, help='Folder for the results.')
 @click.option(
-    '--scenario', default='demo', show_default=True, type=SCENARIO, help='Scenario to tow.'
+    '--scenario', type=SCENARIO, help='Scenario to tow, by default demo_short; with --full demo.'
 )
+@click.option('--full', is_flag=True, help='Tow an hour, fit all of it, and tow what is diagnosed.')
 @click.option(
     '--diagnosis/--no-diagnosis', default=True, show_default=True, help='At the end, diagnose '
-    'tows in a current that the model lacks.',
+    'tows with an effect that the model lacks.',
 )  # fmt: skip
-def command(out: Path, scenario: Path, diagnosis: bool) -> None:
-    """Tow a sea trial through the ROS graph, record it, replay it, and refit the boards.
+def command(out: Path, scenario: Path | None, full: bool, diagnosis: bool) -> None:
+    """Tow a synthetic trial through the ROS graph, record it, replay it, and refit the boards.
 
-    Every node is a separate process, and they communicate by DDS on this machine only. The boards
-    are estimated from the whole tow, hauling included. The folder receives the bag,
-    identification.json, figures and summary.json. At the end four tows of the default gear are
-    diagnosed, three of them in a current that the model lacks. The diagnosis finds the current,
-    and the gear is towed again with it. Bags and reports of this part are in the folder 'hidden'.
+    Every node is a separate process, and they communicate by DDS on this machine only. The folder
+    receives the bag, identification.json, figures and summary.json. At the end steady states of
+    the default gear are diagnosed that have an effect the model lacks. They are made without towing
+    in time. The effect is found, named and put into the gear file, in the folder 'hidden'.
+
+    With --full an hour is towed, and the boards are estimated from all of it, hauling included. The
+    tows that are diagnosed are towed too, in a current, and so is the repaired gear.
     """
-    path = packaged(scenario, 'scenarios').absolute()
+    path = packaged(scenario or ('demo' if full else 'demo_short'), 'scenarios').absolute()
     loaded = load_scenario(path)
     truth = dict(zip(COEFFICIENTS, true_coefficients(path).tolist(), strict=True))
     folder = DemoFolder(out)
     console = error_console()
+    steps = Steps(console, (5 if full else 4) - (not diagnosis))
     began = time.monotonic()
     with (
         own_graph(folder.logs) as environment,
         Processes(folder.logs, environment) as processes,
         _monitor(environment) as monitor,
     ):
+        steps.say(
+            f'{loaded.duration_s / 60:.0f} minutes at sea by simulation, instruments and recorder',
+            120 if full else 30,
+        )
         tow_s = _tow(processes, monitor, loaded, folder, console)
         traffic = _traffic(monitor, folder)
-        _replay(processes, monitor, loaded, folder, console)
-    learned = _learn(loaded, folder, console)
+        steps.say('replay into the identification, which refits the boards', 60 if full else 20)
+        _replay(processes, monitor, loaded, folder)
+    learned = None
+    if full:
+        steps.say('fit of the boards to the whole tow', 120)
+        learned = _learn(loaded, folder, console)
     result = load_result(folder.path)
-    _view(loaded, folder, console)
+    steps.say('pictures of the tow', 40 if full else 10)
+    if full:
+        _view(loaded, folder, console)
     figures = _draw(loaded, folder)
     _speak(loaded, folder)
     folder.write_summary(
@@ -184,16 +216,35 @@ def command(out: Path, scenario: Path, diagnosis: bool) -> None:
                 name: {**values, 'truth': truth[name]}
                 for name, values in result['coefficients'].items()
             },
-            'motion': result['motion'],
+            'motion': result.get('motion'),
             'bag': folder.bag.name,
             'figures': figures,
         }
     )
-    print_result(result, truth)
-    print_motion(learned, loaded.duration_s)
-    _close(loaded, folder, traffic, tow_s, time.monotonic() - began)
+    _require_all(traffic, folder)
+    if learned is not None:
+        print_result(result, truth)
+        print_motion(learned, loaded.duration_s)
+        _close(loaded, folder, traffic, tow_s, time.monotonic() - began)
+        if diagnosis:
+            steps.say('four more tows, their diagnosis and the repaired gear', 180)
+            hidden_effect(folder.hidden, console)
+        return
+    found = None
     if diagnosis:
-        hidden_effect(folder.hidden, console)
+        steps.say('states of a log that errs, made without towing in time, diagnosed', 40)
+        with ProgressDisplay(console) as display:
+            found = diagnose_short_tows(folder.hidden, display)
+    lines = (
+        f'{loaded.duration_s / 60:.0f} min at sea, {tow_s:.0f} s here: '
+        f'{sum(traffic.recorded.values())} messages recorded, as many as were published.',
+        refitted_line(result, truth),
+        *(() if found is None else finding_lines(found)),
+    )
+    click.echo('\n'.join(lines))
+    click.echo(f'\nOpen, after {time.monotonic() - began:.0f} s:')
+    for name in (*PAGES, *(() if found is None else HIDDEN_PAGES)):
+        click.echo(f'  {folder.path / name}')
 
 
 def _monitor(environment: Mapping[str, str]) -> 'Monitor':
@@ -241,7 +292,6 @@ def _replay(
     monitor: 'Monitor',
     scenario: Scenario,
     folder: DemoFolder,
-    console: Console,
 ) -> None:
     """Replay the instrument topics of the bag to the identification, and let it finish."""
     path = str(scenario.path)
@@ -262,16 +312,13 @@ def _replay(
         topics=topics,
         wait_for=['identification_node'],
     )
-    with ProgressDisplay(console) as display:
+    with ProgressDisplay(error_console()) as display:
         while not processes.finished('bag_player'):
             done = float(monitor.value('bag_player', 'bag', 'played until') or 0.0)
             windows = monitor.value('identification_node', 'estimate', 'windows') or '0'
             detail = f'{windows} steady windows'
             display(WorkProgress('replaying', done, scenario.duration_s, 's', detail))
             time.sleep(LOOK_S)
-    console.print(
-        'identification: fit to all windows, and check on the windows held out of the fit'
-    )
     success, message = monitor.finish_identification(processes.check)
     if not success:
         raise TrawlError(f'{folder.bag}: {message}')
@@ -284,7 +331,6 @@ def _learn(scenario: Scenario, folder: DemoFolder, console: Console) -> Report:
 
     The report replaces that of the replay: it has the same windows, and shows both estimates.
     """
-    console.print('identification: fit to the whole tow, starting from the estimate of its windows')
     with ProgressDisplay(console) as display:
         found = trials.identify(
             [folder.bag],
@@ -346,6 +392,11 @@ def _close(
         f'{scenario.duration_s / 60:.1f} min at sea in {tow_s:.1f} s, '
         f'{scenario.duration_s / tow_s:.1f} × real time; {all_s:.0f} s in all'
     )
+    click.echo(f'{folder.bag}: {recorded} messages, as many as were published')
+    click.echo(f'{folder.path}: summary.json, identification.json and figures')
+
+
+def _require_all(traffic: TopicCounts, folder: DemoFolder) -> None:
     if traffic.lost:
         listed = '; '.join(
             f'{topic}: {published} published, {recorded} recorded'
@@ -354,5 +405,3 @@ def _close(
         raise TrawlError(
             f'{folder.bag}: messages are missing; expected all that were published: {listed}'
         )
-    click.echo(f'{folder.bag}: {recorded} messages, as many as were published')
-    click.echo(f'{folder.path}: summary.json, identification.json and figures')

@@ -62,6 +62,16 @@ class ValidationCase:
     run: Callable[[bool], Findings]
 
 
+FIGURES: Mapping[int, str] = MappingProxyType(
+    {
+        **dict.fromkeys((4, 5), 'identified'),
+        6: 'warp_sweep',
+        **dict.fromkeys(range(7, 13), 'installation'),
+        **dict.fromkeys(range(13, 17), 'degrees_of_freedom'),
+    }
+)
+"""Case that remakes a figure of the paper; figures 1 to 3 are drawings."""
+
 NAMES: tuple[str, ...] = tuple(name for names in SECTIONS.values() for name in names)
 
 
@@ -77,6 +87,22 @@ def report_section(name: str) -> str:
         if name in names:
             return section
     raise TrawlError(f'{name}: no such case; expected one of {", ".join(NAMES)}')
+
+
+def case_of_figure(number: int) -> str:
+    """Name of the case that remakes a figure of the paper.
+
+    Raises
+    ------
+    TrawlError
+        If none does.
+    """
+    if number not in FIGURES:
+        raise TrawlError(
+            f'figure {number}: found no case, expected a figure of the paper that shows results, '
+            f'{min(FIGURES)} to {max(FIGURES)}'
+        )
+    return FIGURES[number]
 
 
 def load_case(name: str) -> ValidationCase:

@@ -1,4 +1,4 @@
-"""Claims of section IV.D on 6-DOF and 3-DOF boards against the sea trial, Fig. 13 to 16."""
+"""Claims of section IV.D on 6-DOF and 3-DOF boards against the synthetic trial, Fig. 13 to 16."""
 
 import numpy as np
 

@@ -41,7 +41,7 @@ def point_board(model: GearModel, attack: float, slip: float) -> GearModel:
     attack, slip
         α and β (rad) at which their constant force coefficients are read off eq. 14.
     """
-    values = coefficients_at(model.coefficients, np.float64(attack), np.float64(slip))
+    values = coefficients_at(model.coefficients, np.array(attack), np.array(slip))
     constants = np.zeros(len(COEFFICIENTS))
     constants[[COEFFICIENTS.index(name) for name in FORCES]] = values[:3]
     return model.with_coefficients(constants).with_board(points=np.zeros((3, 3)))

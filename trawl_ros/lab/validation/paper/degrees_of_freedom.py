@@ -1,4 +1,4 @@
-"""Reproduction of Fig. 13 to 16: 6-DOF boards, boards as points, and the sea trial."""
+"""Reproduction of Fig. 13 to 16: 6-DOF boards, boards as points, and the synthetic sample trial."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -40,12 +40,12 @@ def run(quick: bool) -> Findings:
     text = (
         f'The point has the coefficients of eq. 37 at α {np.degrees(seen.attack):.1f}° and '
         f'β {np.degrees(seen.slip):.1f}°, the means of the 6-DOF boards over the sweep; its lift '
-        'is level. The trial is the sample trial of this package, not that of the paper, whose '
-        'readings are not printed; its plant is twice as fine as the model.'
+        'is level. The trial is the synthetic sample trial of this package, not that of the paper, '
+        'whose readings are not printed; its plant is twice as fine as the model.'
     )
     caption = (
         f'Fig. 13 to 16 remade. Lines and full marks at {seen.speed:.2f} m/s; open marks are the '
-        'states of the trial at other speeds.'
+        'states of the synthetic trial at other speeds.'
     )
     return Findings(
         checks,
@@ -53,8 +53,8 @@ def run(quick: bool) -> Findings:
             Drawing('fig13_to_16', caption, _lines(seen)),
             Drawing(
                 'all_states',
-                'Every state of the trial, each predicted at its own warp length and speed; '
-                'the dashed line is agreement.',
+                'Every state of the synthetic trial, each predicted at its own warp length and '
+                'speed; the dashed line is agreement.',
                 _states(seen),
             ),
         ),
@@ -73,10 +73,10 @@ def _lines(seen: Comparison) -> Figure:
         axes.plot(seen.lengths, scale * seen.six[:, one], color='C0', label='6-DOF')
         axes.plot(seen.lengths, scale * seen.three[:, one], color='C3', label='3-DOF')
         trial = scale * seen.trial[:, one]
-        axes.plot(lengths[rows], trial[rows], 'k:o', ms=5, label='sea trial')
+        axes.plot(lengths[rows], trial[rows], 'k:o', ms=5, label='synthetic trial')
         axes.plot(
             lengths[others], trial[others], 'o', mfc='none', mec='0.6', ms=5,
-            label='sea trial, other speeds',
+            label='synthetic trial, other speeds',
         )  # fmt: skip
         axes.set_title(name, fontsize='medium')
         axes.set_xlabel('warp length [m]')
@@ -127,5 +127,5 @@ def _table(seen: Comparison) -> TextTable:
 
 
 CASE = ValidationCase(
-    'degrees_of_freedom', '6-DOF and 3-DOF boards against the trial (Fig. 13 to 16)', run
+    'degrees_of_freedom', '6-DOF and 3-DOF boards against the synthetic trial (Fig. 13 to 16)', run
 )

@@ -47,7 +47,8 @@ def run(quick: bool) -> Findings:
                 'fig5',
                 'Fig. 5 remade, with two standard deviations of the estimate. In place of the '
                 "tests of the paper's references 18 and 19, whose figures it does not print, "
-                'stand the coefficients that made the trial. Shaded: where the boards worked.',
+                'stand the coefficients that made the synthetic trial. Shaded: where the '
+                'boards worked.',
                 _lines(fit),
             ),
         ),
@@ -110,4 +111,6 @@ def _table(fit: PaperRefit) -> TextTable:
     return TextTable('The coefficients of eq. 37.', head, tuple(rows))
 
 
-CASE = ValidationCase('identified', 'Coefficients refitted to the sample trial (Fig. 4 and 5)', run)
+CASE = ValidationCase(
+    'identified', 'Coefficients refitted to the synthetic sample trial (Fig. 4 and 5)', run
+)

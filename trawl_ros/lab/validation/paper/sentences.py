@@ -30,7 +30,7 @@ def run(quick: bool) -> Findings:
         text=(
             f'Of {len(claims)} sentences this model agrees with {agree} in full. Where the paper '
             'compares with its own sea trial or with tests of boards, which it does not print, '
-            'the sample trial of this package and the coefficients that made it stand in.'
+            'the synthetic sample trial of this package and the coefficients that made it stand in.'
         ),
     )
 

@@ -96,8 +96,8 @@ def sighting(model: GearModel, steady: SteadyState) -> Sighting:
     seen, state = steady.observables, steady.equilibrium.state
     coefficients = coefficients_at(
         model.coefficients,
-        np.float64(seen.port_attack),
-        np.float64(seen.port_slip),
+        np.array(seen.port_attack),
+        np.array(seen.port_slip),
     )
     load = board_loads(model, state)[0]
     return Sighting(

@@ -1,4 +1,4 @@
-"""Sample sea trial in the paper's form: one row of means for each steady state."""
+"""Synthetic sample trial in the paper's form: one row of means for each steady state."""
 
 from collections import defaultdict
 from collections.abc import Sequence
