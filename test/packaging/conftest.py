@@ -82,20 +82,20 @@ def source_workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def readme_line(beginning: str) -> str:
-    """The line of the README's blocks of commands that begins so."""
-    lines = (ROOT / 'README.md').read_text(encoding='utf-8').splitlines()
+def install_line(beginning: str) -> str:
+    """The line of the install guide's blocks of commands that begins so."""
+    lines = (ROOT / 'docs' / 'guides' / 'install.md').read_text(encoding='utf-8').splitlines()
     (found,) = (line for line in lines if line.startswith(beginning))
     return found
 
 
 @pytest.fixture(scope='session')
 def workspace(source_workspace: Path) -> Workspace:
-    """The workspace after what the README says to build and source it."""
+    """The workspace after what the guide says to build and source it."""
     environment = clean_environment(source_workspace)
     beside = Path(sys.executable).parent
     sourced = subprocess.run(
-        ['bash', '-c', f'{{ {readme_line("python3 -m colcon build")}; }} >&2 && env -0'],
+        ['bash', '-c', f'{{ {install_line("python3 -m colcon build")}; }} >&2 && env -0'],
         cwd=source_workspace,
         env={**environment, 'PATH': f'{beside}{os.pathsep}{environment["PATH"]}'},
         stdin=subprocess.DEVNULL,

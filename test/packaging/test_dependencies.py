@@ -1,4 +1,4 @@
-"""What a full ROS 2, rosdep and the README's line of pip give is enough for every executable."""
+"""What a full ROS 2, rosdep and the install guide's line of pip give is enough for every executable."""
 
 import ast
 import importlib.metadata as metadata
@@ -56,8 +56,8 @@ def package():
     return parse_package(str(ROOT))
 
 
-def readme_requirements() -> list[str]:
-    text = (ROOT / 'README.md').read_text(encoding='utf-8')
+def install_requirements() -> list[str]:
+    text = (ROOT / 'docs' / 'guides' / 'install.md').read_text(encoding='utf-8')
     (line,) = (
         line for line in text.splitlines() if line.startswith('pip install ') and 'dask' in line
     )
@@ -124,9 +124,9 @@ def test_package_xml_names_the_rosdep_keys_of_setup_py(declared, package):
     assert python == set(declared['BY_ROSDEP'].values())
 
 
-def test_the_readme_has_pip_install_the_rest_into_an_environment_that_sees_ros(declared):
-    assert readme_requirements() == declared['BY_PIP']
-    text = (ROOT / 'README.md').read_text(encoding='utf-8')
+def test_the_guide_has_pip_install_the_rest_into_an_environment_that_sees_ros(declared):
+    assert install_requirements() == declared['BY_PIP']
+    text = (ROOT / 'docs' / 'guides' / 'install.md').read_text(encoding='utf-8')
     assert 'python3 -m venv --system-site-packages .venv' in text
 
 
@@ -148,7 +148,7 @@ def test_every_executable_can_be_imported_with_what_is_declared_alone(declared, 
     by_key = {key: Requirement(text).name for text, key in declared['BY_ROSDEP'].items()}
     of_ros = keys(package.exec_depends) - by_key.keys()
     names = {by_key[key] for key in keys(package.exec_depends) & by_key.keys()}
-    names |= {Requirement(text).name for text in readme_requirements()}
+    names |= {Requirement(text).name for text in install_requirements()}
     # ROS 2 itself is there as its own packages need it.
     given = closure(names) | {'trawl-ros'}
     blocked = [

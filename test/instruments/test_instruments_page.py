@@ -1,4 +1,4 @@
-"""The README's table of instruments says what they publish, of which type, how often."""
+"""The table of instruments says what they publish, of which type, how often."""
 
 import re
 from pathlib import Path
@@ -9,16 +9,16 @@ from trawl_ros.instruments.errors.faults import KINDS
 from trawl_ros.instruments.parameters import GROUPS, load_instruments, observing
 from trawl_ros.records.topics import INSTRUMENTS
 
-README = Path(__file__).parents[2] / 'README.md'
+PAGE = Path(__file__).parents[2] / 'docs' / 'instruments.md'
 
-if not README.is_file():
-    pytest.skip('the README lies beside a source checkout only', allow_module_level=True)
+if not PAGE.is_file():
+    pytest.skip('the documents are in a source checkout only', allow_module_level=True)
 
 
 def rows() -> dict[str, tuple[str, float]]:
     """Type and rate by topic."""
     found = {}
-    for line in README.read_text().splitlines():
+    for line in PAGE.read_text().splitlines():
         cells = [cell.strip() for cell in line.strip('|').split('|')]
         if len(cells) == 5 and cells[3].endswith(' Hz'):
             for topic in re.findall(r'`([^`]+)`', cells[1]):
@@ -63,5 +63,5 @@ def test_the_table_has_every_instrument_with_type_and_rate() -> None:
 
 
 def test_every_kind_of_fault_is_named() -> None:
-    text = README.read_text()
+    text = PAGE.read_text()
     assert [kind for kind in KINDS if f'`{kind}`' not in text] == []
