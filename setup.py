@@ -158,6 +158,8 @@ setup(
             *(f'{node} = {PACKAGE}.nodes.starting:{node}' for node in NODES),
             f'trawl = {PACKAGE}.cli.main:main',
         ],
+        # Named as the module: `-p trawl_ros.testing` then loads it once.
+        'pytest11': [f'{PACKAGE}.testing = {PACKAGE}.testing'],
     },
     zip_safe=False,
 )

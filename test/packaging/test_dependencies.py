@@ -17,8 +17,17 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[2]
-OPTIONAL = {'websockets', 'rerun', 'rerun_cli', 'moordyn', 'moorpy', 'trawlkit', 'tf2_msgs'}
-"""Of extras; each is looked for where it is used, and its absence is a sentence."""
+OPTIONAL = {
+    'websockets',
+    'rerun',
+    'rerun_cli',
+    'moordyn',
+    'moorpy',
+    'trawlkit',
+    'tf2_msgs',
+    'pytest',
+}
+"""Of extras, looked for where they are used, and pytest, whose plugin only pytest loads."""
 
 WITH_ANOTHER = {'pydantic_core': 'pydantic', 'typing_extensions': 'pydantic', '_typeshed': ''}
 """Modules that come with a distribution, or for type checkers alone."""

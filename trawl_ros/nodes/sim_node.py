@@ -91,6 +91,8 @@ class SimNode(TrawlNode):
     SPECS: ClassVar = (
         Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package.'),
         Text('scenario', '', 'Scenario file or name: its gear, start, commands and end are used.'),
+        Text('winches', 'scenario', 'Who moves the winches in a scenario: its steps, or '
+             'command/winch.', choices=('scenario', 'command')),
         Flag('exit_at_end', False, 'Whether to end with the scenario.'),
         Number('warp_length_m', DEFAULT_START[0], 'm', *LIMITS.warp_m,
                'Length of both warps at the start.'),
@@ -330,7 +332,11 @@ class SimNode(TrawlNode):
 
     def _command_winches(self, message: Any) -> None:
         wanted = wanted_lengths(message)
-        self._commanded(WINCH_COMMAND, message).command_winches(*wanted)
+        if isinstance(self._tow, Trial) and self.parameters['winches'] == 'command':
+            self._watch(WINCH_COMMAND, message)
+            self._tow.command_winches(*wanted)
+        else:
+            self._commanded(WINCH_COMMAND, message).command_winches(*wanted)
         if any(message.velocity):
             self.say(
                 f'velocity of {WINCH_COMMAND}', WARN, 'not used: winches pay out at their own speed'
@@ -346,9 +352,12 @@ class SimNode(TrawlNode):
             raise MessageError(
                 f'{topic}: the scenario is in command; expected no command beside it'
             )
-        most = self.parameters['max_command_age_s']
-        self._watches[topic].take(stamp_of(message), self.now(), tow.time_s, most)
+        self._watch(topic, message)
         return tow
+
+    def _watch(self, topic: str, message: Any) -> None:
+        most = self.parameters['max_command_age_s']
+        self._watches[topic].take(stamp_of(message), self.now(), self._tow.time_s, most)
 
     def _watch_commands(self) -> None:
         tow, timeout = self._tow, self.parameters['command_timeout_s']
