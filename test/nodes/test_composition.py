@@ -50,7 +50,7 @@ HEADING = 'vessel/heading'
 
 @pytest.fixture(params=EXECUTORS.values(), ids=EXECUTORS)
 def graph(request, open_graph):
-    with open_graph(request.param) as graph:
+    with open_graph(make_executor=request.param) as graph:
         yield graph
 
 

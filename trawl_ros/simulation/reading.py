@@ -166,13 +166,15 @@ def _means(values: FloatArray, groups: list[IntArray]) -> list[float]:
 
 def read_picture(model: GearModel, stamp: int, state: State, tow: Tow) -> GearPicture:
     """Return a picture of the gear for drawing: every rope and bar with its tension."""
-    points = points_of(model, state, tow).positions
-    tensions = _means(bar_tensions(model, state, tow), [bars for *_, bars in model.layout.lines])
+    lines = model.layout.lines
+    places = points_of(model, state, tow).positions[np.concatenate([one for _, one, _ in lines])]
+    ends = np.cumsum([len(one) for _, one, _ in lines]).tolist()
+    tensions = _means(bar_tensions(model, state, tow), [bars for *_, bars in lines])
     return GearPicture(
         stamp=stamp,
         lines=tuple(
-            Polyline(name, points[numbers], tension)
-            for (name, numbers, _), tension in zip(model.layout.lines, tensions, strict=True)
+            Polyline(name, places[begin:end], tension)
+            for (name, *_), begin, end, tension in zip(lines, [0, *ends], ends, tensions)
         ),
         doors=_doors(model, state),
         door_size=(model.board.chord, model.board.span),

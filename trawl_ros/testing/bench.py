@@ -22,7 +22,7 @@ class Bench(TrawlNode):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(BENCH, **kwargs)
         self.recordings: dict[str, Recording] = {}
-        self._statuses: dict[str, Status] = {}
+        self.latest: dict[str, Status] = {}
         self.listen(DIAGNOSTICS, self._hear, CONSUMER)
 
     def follow(self) -> None:
@@ -49,8 +49,8 @@ class Bench(TrawlNode):
         """Return a line for each silent recording, and for each warning of a node."""
         lines = [one.explanation() for one in self.recordings.values() if not one.messages]
         lines += filter(None, [elsewhere(self, self.subscribed)])
-        wrong = (status for status in self._statuses.values() if status.level != OK)
+        wrong = (status for status in self.latest.values() if status.level != OK)
         return lines + [f'{status.name}: {status.message}' for status in wrong]
 
     def _hear(self, message: Any) -> None:
-        self._statuses.update({status.name: status for status in read_statuses(message)})
+        self.latest.update({status.name: status for status in read_statuses(message)})

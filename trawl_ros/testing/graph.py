@@ -23,8 +23,9 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes, Value
 from trawl_ros.messages.commands import fault_command, vessel_command, winch_command
+from trawl_ros.messages.diagnostics import OK, Status
 from trawl_ros.nodes.runtime.node import TrawlNode
-from trawl_ros.records.topics import SYNC
+from trawl_ros.records.topics import SYNC, absolute
 from trawl_ros.testing.bench import BENCH, Bench
 from trawl_ros.testing.recording import Recording
 
@@ -211,6 +212,13 @@ class Graph:
             Type such as ``geometry_msgs/msg/Wrench``; not needed for topics of the package.
         """
         return self.bench.record(topic, type_name)
+
+    def status(self, name: str) -> Status:
+        """Return the newest status of ``/diagnostics`` by name, such as ``'sim_node: tow'``.
+
+        Before the first one its message is empty.
+        """
+        return self.bench.latest.get(absolute(name), Status(name, OK, ''))
 
     def call(self, service: str) -> Any:
         """Call a service of type ``std_srvs/Trigger``, and return its response."""
