@@ -24,6 +24,7 @@ NODES = (
     'nmea_out',
     'foxglove_node',
     'view_node',
+    'tether_node',
 )
 
 # What a full ROS 2 (Ubuntu 24.04) gives by the rosdep keys that package.xml names.

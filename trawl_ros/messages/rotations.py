@@ -8,6 +8,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from trawl_ros.core.arrays import FloatArray
 
@@ -55,3 +56,8 @@ def about_z(angle: float) -> FloatArray:
     """Return the matrix (3, 3) from components in a yawed frame to those in the fixed frame."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def rotation_matrix(quaternion: Sequence[float]) -> FloatArray:
+    """Return the matrix (3, 3) of a unit quaternion (x, y, z, w)."""
+    return np.asarray(Rotation.from_quat(quaternion).as_matrix())
