@@ -81,8 +81,12 @@ def gear_markers(picture: GearPicture) -> TopicMessage:
     length, height = picture.door_size
     for side, door in zip(SIDES, picture.doors, strict=True):
         size = (length, THICKNESS * length, height)
-        pose = {'position': door.position, 'orientation': door.orientation}
-        markers.append(_Marker(DOOR_FRAMES[side], _Kind.CUBE, size, _STEEL, **pose))
+        markers.append(
+            _Marker(
+                DOOR_FRAMES[side], _Kind.CUBE, size, _STEEL,
+                position=door.position, orientation=door.orientation,
+            )
+        )  # fmt: skip
     markers += _hull(named)
     markers += [_school(number, school) for number, school in enumerate(picture.schools)]
     writer = CdrWriter()
@@ -122,7 +126,12 @@ def _lines(name: str, lines: Sequence[Polyline]) -> _Marker:
 
 def _school(number: int, school: SchoolTruth) -> _Marker:
     return _Marker(
-        'schools', _Kind.SPHERE, school.size, _FISH, position=school.position, number=number
+        'schools',
+        _Kind.SPHERE,
+        school.size.tolist(),
+        _FISH,
+        position=school.position,
+        number=number,
     )
 
 

@@ -58,6 +58,6 @@ def about_z(angle: float) -> FloatArray:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def rotation_matrix(quaternion: Sequence[float]) -> FloatArray:
+def rotation_matrix(quaternion: FloatArray) -> FloatArray:
     """Return the matrix (3, 3) of a unit quaternion (x, y, z, w)."""
     return np.asarray(Rotation.from_quat(quaternion).as_matrix())

@@ -115,11 +115,12 @@ class Graph:
             parameters = {**{k: v for k, v in common.items() if k in specs}, **parameters}
             if self._processes is not None:
                 return self._processes.start(kind, **parameters)
-            kind = node_class(kind)
-        elif common:
-            parameters = {'use_sim_time': True, **parameters}
+            made: NodeClass = node_class(kind)
+        else:
+            made = kind
+            parameters = {'use_sim_time': True, **parameters} if common else parameters
         overrides = [Parameter(name, value=value) for name, value in parameters.items()]
-        node = kind(context=self.context, parameter_overrides=overrides)
+        node = made(context=self.context, parameter_overrides=overrides)
         self.executor.add_node(node)
         return node
 
@@ -139,7 +140,8 @@ class Graph:
     @cached_property
     def bench(self) -> Bench:
         """Node by which the test takes part in the graph."""
-        return self.add(Bench, **({'use_sim_time': True} if self._simulated else {}))
+        bench: Bench = self.add(Bench, **({'use_sim_time': True} if self._simulated else {}))
+        return bench
 
     @property
     def time_s(self) -> float:
