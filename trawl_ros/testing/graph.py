@@ -307,7 +307,7 @@ def open_graph(
     Examples
     --------
     >>> from trawl_ros.testing import open_graph
-    >>> with open_graph(['winch_node'], scenario='quiet_day') as graph:
+    >>> with open_graph(['winch_node'], scenario='rough_sea') as graph:
     ...     winch = graph.record('winch/joint_states')
     ...     graph.wait(5.0)
     ...     winch.latest.name
