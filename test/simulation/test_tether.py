@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.messages.rotations import about_z
+from trawl_ros.messages.rotations import about_z, rotation_matrix
 from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.simulation.tether import Tether, VehicleMotion
@@ -82,3 +83,9 @@ def test_a_tow_point_astern_turns_the_vehicle_by_its_arm(model):
 def test_a_speed_at_which_nothing_can_be_towed_is_an_error(model):
     with pytest.raises(NoSteadyState):
         Tether(model, straight(0.0, speed=0.2), (LENGTH, LENGTH))
+
+
+def test_an_orientation_is_the_rotation_of_its_quaternion():
+    turns = Rotation.random(50, random_state=2)
+    for quaternion, turn in zip(turns.as_quat(), turns.as_matrix()):
+        assert np.allclose(rotation_matrix(quaternion), turn)

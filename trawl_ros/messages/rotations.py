@@ -8,7 +8,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from trawl_ros.core.arrays import FloatArray
 
@@ -60,4 +59,11 @@ def about_z(angle: float) -> FloatArray:
 
 def rotation_matrix(quaternion: FloatArray) -> FloatArray:
     """Return the matrix (3, 3) of a unit quaternion (x, y, z, w)."""
-    return np.asarray(Rotation.from_quat(quaternion).as_matrix())
+    x, y, z, w = quaternion / np.linalg.norm(quaternion)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
