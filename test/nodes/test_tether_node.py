@@ -84,6 +84,7 @@ def test_a_vehicle_whose_thrust_is_the_pull_keeps_her_speed(graph, tether):
     graph.until(lambda: len(gear) > 5 and len(force) > 90)
     assert {'port_warp', 'door_port'} <= {marker.ns for marker in gear.latest.markers}
     assert force.latest.header.frame_id == 'world'
+    assert {marker.header.frame_id for marker in gear.latest.markers} == {'world'}
     assert np.diff(gear.values(lambda message: message.markers[0].header.stamp.sec)).min() >= 1
 
 

@@ -63,8 +63,8 @@ class _Marker:
     number: int = 0
 
 
-def gear_markers(picture: GearPicture) -> TopicMessage:
-    """Draw the gear in the frame ``map``, as a message that is encoded already.
+def gear_markers(picture: GearPicture, frame: str = MAP) -> TopicMessage:
+    """Draw the gear in a frame, as a message that is encoded already.
 
     A rope becomes a line, all netting one marker, a door a box, a school of fish an ellipsoid. The
     ship's waterline lies ahead of the towing blocks.
@@ -92,7 +92,7 @@ def gear_markers(picture: GearPicture) -> TopicMessage:
     writer = CdrWriter()
     writer.numbers('I', len(markers))
     for marker in markers:
-        _write(writer, picture.stamp, marker)
+        _write(writer, picture.stamp, frame, marker)
     return 'truth/gear', Encoded('visualization_msgs/msg/MarkerArray', writer.data())
 
 
@@ -151,10 +151,10 @@ def _hull(named: Mapping[str, Sequence[Polyline]]) -> list[_Marker]:
     return [_Marker(VESSEL, _Kind.LINE_STRIP, (LINE_WIDTH, 0.0, 0.0), _STEEL, closed)]
 
 
-def _write(writer: CdrWriter, stamp: int, marker: _Marker) -> None:
+def _write(writer: CdrWriter, stamp: int, frame: str, marker: _Marker) -> None:
     """Write a ``visualization_msgs/Marker``, its fields in order."""
     writer.numbers('iI', *divmod(int(stamp), SECOND))
-    writer.text(MAP)
+    writer.text(frame)
     writer.text(marker.namespace)
     writer.numbers('3i', marker.number, marker.kind, _Kind.ADD)
     writer.numbers('7d', *marker.position, *marker.orientation)

@@ -148,7 +148,7 @@ class TetherNode(TrawlNode):
         if rate and stamp / SECOND >= self._drawn + 1.0 / rate - 1e-9:
             self._drawn = stamp / SECOND
             if self.advertise(GEAR, GEAR_TYPE).get_subscription_count():
-                self.send(GEAR, gear_markers(tether.picture(stamp))[1])
+                self.send(GEAR, gear_markers(tether.picture(stamp), fixed)[1])
 
 
 def _motion(message: Any) -> VehicleMotion:
