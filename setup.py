@@ -24,6 +24,7 @@ NODES = (
     'nmea_out',
     'foxglove_node',
     'view_node',
+    'tether_node',
 )
 
 # What a full ROS 2 (Ubuntu 24.04) gives by the rosdep keys that package.xml names.
@@ -179,6 +180,8 @@ setup(
             *(f'{node} = {PACKAGE}.nodes.starting:{node}' for node in NODES),
             f'trawl = {PACKAGE}.cli.main:main',
         ],
+        # Named as the module: `-p trawl_ros.testing` then loads it once.
+        'pytest11': [f'{PACKAGE}.testing = {PACKAGE}.testing'],
     },
     zip_safe=False,
 )

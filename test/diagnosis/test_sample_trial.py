@@ -26,7 +26,7 @@ def cut_off():
 
 @pytest.mark.parametrize('minutes', [52, 78, 125])
 def test_a_spread_sensor_that_errs_anew_in_each_state_is_no_discrepancy(cut_off, minutes):
-    # Three to six states, of one to three lengths of warp: calibration alone would not explain them.
+    # Three to six states: calibration alone would not explain them.
     found = diagnose_windows(load_gear('kaifuha'), cut_off(minutes), ['sea trial'])
     assert found.verdict == 'NO_DISCREPANCY', found.reason
     assert found.score_test.strongest < 0.8 * found.score_test.limit

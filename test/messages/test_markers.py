@@ -1,10 +1,12 @@
 """The ship among the markers: where the warps leave her, and as long as stated."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.markers import VESSEL_LENGTH, gear_markers
 from trawl_ros.records.truth import DoorTruth, GearPicture, Polyline, SchoolTruth
 
@@ -25,6 +27,11 @@ PORT = np.array([-np.sin(HEADING), np.cos(HEADING), 0.0])
 STERN = np.array([10.0, 20.0, 0.0])
 
 
+def drawn(picture: GearPicture) -> Any:
+    _, message = gear_markers(picture)
+    return deserialize(serialize(message), message.__msgtype__)
+
+
 def _picture(*names: str) -> GearPicture:
     ends = {'port_warp': STERN + 6.0 * PORT, 'starboard_warp': STERN - 6.0 * PORT}
     lines = tuple(
@@ -34,7 +41,7 @@ def _picture(*names: str) -> GearPicture:
 
 
 def test_the_hull_lies_ahead_of_the_blocks_along_the_heading():
-    _, array = gear_markers(_picture('port_warp', 'starboard_warp'))
+    array = drawn(_picture('port_warp', 'starboard_warp'))
     (hull,) = (marker for marker in array.markers if marker.ns == 'vessel')
     points = np.array([[p.x, p.y, p.z] for p in hull.points]) - STERN
     along, across = points @ AHEAD, points @ PORT
@@ -45,7 +52,7 @@ def test_the_hull_lies_ahead_of_the_blocks_along_the_heading():
 
 
 def test_without_both_warps_nobody_knows_where_the_ship_is():
-    _, array = gear_markers(_picture('port_warp'))
+    array = drawn(_picture('port_warp'))
     assert 'vessel' not in {marker.ns for marker in array.markers}
 
 
@@ -54,7 +61,7 @@ def test_schools_are_ellipsoids_that_viewers_tell_apart():
         SchoolTruth(np.array([north, 5.0, -90.0]), np.array([60.0, 40.0, 20.0]), 1.0)
         for north in (100.0, 300.0)
     )
-    _, array = gear_markers(replace(_picture(), schools=fish))
+    array = drawn(replace(_picture(), schools=fish))
     schools = [marker for marker in array.markers if marker.ns == 'schools']
     assert [marker.id for marker in schools] == [0, 1]
     second = schools[1]

@@ -8,7 +8,7 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.core.errors import MessageError
 from trawl_ros.messages.cdr import deserialize, serialize
-from trawl_ros.messages.markers import FULL_SCALE, gear_markers, tension_colour
+from trawl_ros.messages.markers import FULL_SCALE, gear_markers, tension_colours
 from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.transforms import rename_frames, transforms_message
@@ -210,26 +210,33 @@ PICTURE = GearPicture(
 )
 
 
+def drawn():
+    _, message = gear_markers(PICTURE)
+    return deserialize(serialize(message), message.__msgtype__)
+
+
 def test_markers_replace_those_of_the_picture_before():
-    names = [[(m.ns, m.id) for m in gear_markers(PICTURE)[1].markers] for _ in range(2)]
+    names = [[(m.ns, m.id) for m in drawn().markers] for _ in range(2)]
     assert names[0] == names[1]
     assert len(set(names[0])) == len(names[0]) == 4
 
 
 def test_lines_of_one_name_are_one_marker_with_a_colour_per_line():
-    net = gear_markers(PICTURE)[1].markers[1]
+    net = drawn().markers[1]
     assert net.type == ros.visualization_msgs__msg__Marker.LINE_LIST
     segments = sum(len(line.points) - 1 for line in PICTURE.lines if line.name == 'net')
     assert len(net.points) == len(net.colors) == 2 * segments
     first, second = (line for line in PICTURE.lines if line.name == 'net')
-    assert net.colors[0] == tension_colour(first.tension)
-    assert net.colors[-1] == tension_colour(second.tension)
+    shown = [(colour.r, colour.g, colour.b, colour.a) for colour in net.colors]
+    wanted = tension_colours(np.array([first.tension, second.tension]))
+    assert np.allclose([shown[0], shown[-1]], wanted)
     assert (net.points[0].x, net.points[-1].x) == (first.points[0, 0], second.points[-1, 0])
 
 
-def test_markers_survive_the_way_through_bytes():
-    topic, array = gear_markers(PICTURE)
-    back = deserialize(serialize(array), TOPICS[topic].type)
+def test_markers_are_encoded_as_any_message_is():
+    topic, message = gear_markers(PICTURE)
+    back = deserialize(serialize(message), TOPICS[topic].type)
+    assert serialize(back) == serialize(message)
     warp, *_, port_door, _ = back.markers
     assert [(p.x, p.y, p.z) for p in warp.points] == [tuple(p) for p in PICTURE.lines[0].points]
     assert warp.type == ros.visualization_msgs__msg__Marker.LINE_STRIP
@@ -240,9 +247,9 @@ def test_markers_survive_the_way_through_bytes():
 
 
 def test_tension_runs_from_blue_to_red():
-    slack, full, beyond = (tension_colour(t) for t in (0.0, FULL_SCALE, 2 * FULL_SCALE))
-    assert slack.b > slack.r
-    assert full.r > full.b
+    slack, full, beyond = tension_colours(np.array([0.0, FULL_SCALE, 2 * FULL_SCALE])).tolist()
+    assert slack[2] > slack[0]
+    assert full[0] > full[2]
     assert beyond == full
 
 

@@ -1,18 +1,19 @@
-"""Nodes in an executor, context and domain of their own, and a short trial for them to run."""
+"""Graphs of `trawl_ros.testing` for the project's own nodes, and a short trial for them to run."""
 
 import os
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 import yaml
 
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.running.own_graph import own_graph
+
+if TYPE_CHECKING:
+    from trawl_ros.testing import Graph
 
 # Before rclpy is loaded: nobody outside of this machine is to hear these nodes.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
@@ -41,78 +42,6 @@ steps:
 """
 
 
-class Graph:
-    """Nodes that share one executor; `environment` puts a process into the same graph."""
-
-    def __init__(self, environment: dict[str, str], make_executor: Callable | None) -> None:
-        import rclpy
-        from rclpy.executors import SingleThreadedExecutor
-
-        self.environment = environment
-        self.context = rclpy.Context()
-        domain = int(environment['ROS_DOMAIN_ID'])
-        rclpy.init(args=[], context=self.context, domain_id=domain)
-        self.executor = (make_executor or SingleThreadedExecutor)(context=self.context)
-
-    def add(self, kind: Callable, **parameters: object):
-        """Create a node of a class with parameters, and let it spin with the others."""
-        from rclpy.parameter import Parameter
-
-        overrides = [Parameter(name, value=value) for name, value in parameters.items()]
-        node = kind(context=self.context, parameter_overrides=overrides)
-        self.executor.add_node(node)
-        return node
-
-    def remove(self, node) -> None:
-        """Take a node out of the graph."""
-        self.executor.remove_node(node)
-        node.destroy_node()
-
-    def until(self, condition: Callable[[], object], timeout_s: float = 40.0) -> None:
-        """Spin until something is so."""
-        end = time.monotonic() + timeout_s
-        while not condition():
-            assert time.monotonic() < end, f'not so within {timeout_s:g} s'
-            self.executor.spin_once(timeout_sec=0.05)
-
-    def rest(self, seconds: float) -> None:
-        """Spin for a while."""
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            self.executor.spin_once(timeout_sec=0.05)
-
-    def settle(self, quiet_s: float = 0.5) -> None:
-        """Spin until nothing more arrives of what is under way."""
-        arrived = -1
-        while arrived != (arrived := self._arrived()):
-            self.rest(quiet_s)
-
-    def _arrived(self) -> int:
-        # Heartbeats never end.
-        return sum(
-            number
-            for node in self.executor.get_nodes()
-            for topic, number in node.traffic.counts('received').items()
-            if not topic.endswith(('/diagnostics', '/sync/progress'))
-        )
-
-    def call(self, node, service: str):
-        """Call a Trigger service and give the response."""
-        from std_srvs.srv import Trigger
-
-        client = node.create_client(Trigger, service)
-        self.until(client.service_is_ready)
-        future = client.call_async(Trigger.Request())
-        self.until(future.done)
-        return future.result()
-
-    def close(self) -> None:
-        for node in list(self.executor.get_nodes()):
-            self.remove(node)
-        self.executor.shutdown()
-        self.context.try_shutdown()
-
-
 @pytest.fixture(scope='session', autouse=True)
 def no_viewer() -> Iterator[None]:
     """Leave `view_node` without a viewer, which needs an extra and a display."""
@@ -136,23 +65,28 @@ def pictures(rough_pictures_of_all: None) -> None:
 
 
 @pytest.fixture(scope='session')
-def open_graph(tmp_path_factory: pytest.TempPathFactory):
+def open_graph():
     """Give the context manager that makes a graph in a domain of its own."""
+    from trawl_ros.testing import open_graph
 
-    @contextmanager
-    def opened(make_executor: Callable | None = None) -> Iterator[Graph]:
-        with own_graph(tmp_path_factory.mktemp('log')) as environment:
-            graph = Graph(environment, make_executor)
-            try:
-                yield graph
-            finally:
-                graph.close()
+    return open_graph
 
-    return opened
+
+@pytest.fixture(scope='session', autouse=True)
+def quick_discovery() -> Iterator[None]:
+    """Settle in a fraction of a second: nodes of one process find each other at once."""
+    try:
+        from trawl_ros.nodes.runtime import credit
+    except ImportError:  # without ROS 2
+        yield
+        return
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(credit, 'SETTLED_S', 0.2)
+        yield
 
 
 @pytest.fixture
-def graph(open_graph) -> Iterator[Graph]:
+def graph(open_graph) -> Iterator['Graph']:
     with open_graph() as graph:
         yield graph
 

@@ -197,7 +197,7 @@ def test_it_pauses_plays_one_by_one_and_goes_on(graph, bag):
     player = graph.add(BagPlayer, bag=str(bag), start_paused=True)
 
     def asked(service):
-        return graph.call(player, f'/trawl/bag_player/{service}')
+        return graph.call(f'/trawl/bag_player/{service}')
 
     graph.until(lambda: player._began)
     graph.rest(0.2)

@@ -50,7 +50,7 @@ HEADING = 'vessel/heading'
 
 @pytest.fixture(params=EXECUTORS.values(), ids=EXECUTORS)
 def graph(request, open_graph):
-    with open_graph(request.param) as graph:
+    with open_graph(make_executor=request.param) as graph:
         yield graph
 
 
@@ -81,13 +81,20 @@ def test_all_nodes_of_a_tow_share_a_process(graph, gear_path, tmp_path):
     followers += [graph.add(kind, use_sim_time=True) for kind in (AutotrawlNode, AutopilotNode)]
     speaker = graph.add(NmeaOut, links=[f'pty:{tmp_path}/line'], use_sim_time=True)
     recorder = graph.add(BagRecorder, output=str(tmp_path / 'bag'), use_sim_time=True)
-    simulation = graph.add(SimNode, gear=gear, time_scale=2.0)
+    waited_for = [node.get_name() for node in (*followers[:4], recorder)]
+    simulation = graph.add(SimNode, gear=gear, time_scale=0.0, wait_for=waited_for)
     nodes = [*followers, speaker, recorder, simulation]
     graph.until(lambda: simulation._tow.time_s > TOWED_S, 60.0)
-    graph.until(lambda: recorder._bag.counts.get('/trawl/winch/joint_states', 0) > TOWED_S, 30.0)
+    assert graph.call('pause').success
+    graph.settle()
+    published = simulation.traffic.counts('published')
+    for topic in ('/trawl/truth/winch', '/trawl/truth/door/port/odom', '/trawl/truth/gear'):
+        assert recorder._bag.counts[topic] == published[topic]
+    assert recorder._bag.counts['/trawl/winch/joint_states'] > TOWED_S
     for node in nodes:
         assert node.exit_code is None, node.get_name()
         assert not node._troubles, node.get_name()
+        assert node.traffic.dropped == 0, node.get_name()
         assert node.traffic.counts('published')['/diagnostics'] > 0, node.get_name()
 
 

@@ -52,7 +52,7 @@ def test_cells_that_show_too_much_are_found_while_the_tows_go_on(
         graph.remove(player)
         graph.until(lambda: listener.found and node._watching.idle, timeout_s=120.0)
         graph.settle()
-        answer = graph.call(listener, FINISH)
+        answer = graph.call(FINISH)
         assert answer.success
         assert 'tension cell' in answer.message
         verdict, *findings = listener.found[-1]

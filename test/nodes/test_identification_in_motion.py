@@ -112,7 +112,7 @@ def test_each_half_minute_is_told_and_the_end_is_what_identify_gives(
         assert float(told[name]) == pytest.approx(float(whole[name]))
         assert float(whole[f'{name} std by windows']) > 0.0
     number = len(listener.estimates)
-    answer = graph.call(listener, FINISH)
+    answer = graph.call(FINISH)
     assert answer.success, answer.message
     assert 'min of tow' in answer.message
     graph.until(lambda: len(listener.estimates) > number)

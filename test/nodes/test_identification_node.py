@@ -89,7 +89,7 @@ def session(open_graph, steady_bag, gear_path, estimate_listener, tmp_path_facto
         late = graph.add(partial(estimate_listener, 'late'))
         graph.until(lambda: late.estimates and late.covariances and late.summaries)
         Session.listener, Session.late = listener, late
-        Session.answer = graph.call(listener, 'identification/finish')
+        Session.answer = graph.call('identification/finish')
         graph.until(lambda: len(listener.estimates) > 1)
         Session.resets_before = node._resets
         graph.remove(player)
@@ -188,7 +188,7 @@ def test_measurements_at_sea_without_speed_and_spread_are_not_enough(
         player = graph.add(BagPlayer, bag=str(bag), rate=0.0, wait_for=['identification_node'])
         graph.until(lambda: player.exit_code is not None)
         assert player.exit_code == 0
-        answer = graph.call(listener, 'identification/finish')
+        answer = graph.call('identification/finish')
         assert not answer.success
         graph.until(lambda: listener.report() is not None and listener.report().level == ERROR)
         assert not listener.estimates

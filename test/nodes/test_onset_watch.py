@@ -89,12 +89,12 @@ def test_a_finding_is_published_acknowledged_and_kept(open_graph, moving_bag, wa
         graph.until(lambda: node.subscribers()[FINDINGS][0])
         _play(graph, moving_bag, rate=rate)
         graph.until(bridge.onsets, timeout_s=400.0)
-        assert graph.call(bridge, ACKNOWLEDGE).success
+        assert graph.call(ACKNOWLEDGE).success
         onset = next(one for one in bridge.heard[-1] if 'onset' in one.name)
         assert abs(float(onset.values['onset']) - BEGIN_S) < 180.0
         assert any(one.level == WARN and one.name == 'onset' for one in node.statuses())
-        assert graph.call(bridge, DISMISS).success
-        assert not graph.call(bridge, DISMISS).success
+        assert graph.call(DISMISS).success
+        assert not graph.call(DISMISS).success
         node.finish_work()
     events = [event['event'] for event in LogBook(book).events()]
     assert events[:3] == ['begun', 'raised', 'published']

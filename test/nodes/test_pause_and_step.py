@@ -91,33 +91,33 @@ def all_heard(graph, crew, simulation):
 
 
 def test_paused_nothing_moves_and_resumed_it_goes_on_without_a_gap(graph, crew, simulation):
-    answer = graph.call(crew, 'pause')
+    answer = graph.call('pause')
     assert answer.success
     assert 'paused' in answer.message
     at = all_heard(graph, crew, simulation)
     graph.rest(0.5)
     assert crew.latest == at
     graph.until(lambda: crew.said_by('sim_node: tow') == 'paused')
-    assert graph.call(crew, 'resume').success
+    assert graph.call('resume').success
     graph.until(lambda: crew.latest > at + 1.0)
     stamps = [stamp_of(message) for message in crew.truth]
     assert {after - before for before, after in pairwise(stamps)} == {SECOND // 10}
 
 
 def test_a_step_is_one_truth(graph, crew, simulation):
-    refusal = graph.call(crew, 'step')
+    refusal = graph.call('step')
     assert not refusal.success
     assert 'not paused' in refusal.message
-    graph.call(crew, 'pause')
+    graph.call('pause')
     at = all_heard(graph, crew, simulation)
     number = len(crew.truth)
     for _ in range(3):
-        assert graph.call(crew, 'step').success
+        assert graph.call('step').success
     graph.until(lambda: len(crew.truth) == number + 3)
     graph.rest(0.2)
     assert len(crew.truth) == number + 3
     assert crew.latest == pytest.approx(at + 0.3)
-    graph.call(crew, 'resume')
+    graph.call('resume')
 
 
 def test_real_time_factors_are_reported_by_all_who_go_by_stamps(graph, crew, simulation):
@@ -157,7 +157,7 @@ def documented(subsystem):
 
 def test_after_a_reset_instruments_begin_anew_and_read_the_same_again(graph, crew, simulation):
     graph.until(lambda: crew.latest > 22.0)
-    answer = graph.call(crew, 'reset')
+    answer = graph.call('reset')
     assert answer.success, answer.message
     graph.until(lambda: crew.truth[-1].header.stamp.sec < 5)
     graph.until(lambda: crew.latest > 22.0)

@@ -98,8 +98,8 @@ def test_what_was_recorded_is_offered_again_also_to_those_who_come_late(graph, t
     bag = record(graph, tmp_path / 'bag', offers, topics=[*offers])
     player = graph.add(BagPlayer, bag=str(bag.path), start_paused=True)
     graph.until(lambda: player._began)
-    graph.call(player, '/trawl/bag_player/play_next')
-    graph.call(player, '/trawl/bag_player/play_next')
+    graph.call('/trawl/bag_player/play_next')
+    graph.call('/trawl/bag_player/play_next')
 
     class Late(TrawlNode):
         def __init__(self, **kwargs):

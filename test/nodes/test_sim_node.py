@@ -164,7 +164,7 @@ def test_impossible_commands_are_left_out_and_said(graph, simulation, crew, comm
 def test_reset_starts_the_same_tow_again(graph, simulation, crew):
     before = crew.winches[0]
     del crew.winches[:]
-    answer = graph.call(crew, 'reset')
+    answer = graph.call('reset')
     assert answer.success, answer.message
     graph.until(lambda: crew.winches and crew.winches[-1].header.stamp.sec < 3)
     again = next(m for m in crew.winches if stamp_of(m) == 0)

@@ -185,21 +185,21 @@ def test_without_the_node_that_estimates_it_holds(graph, ship, under_way, sail, 
 
 def test_the_operator_pauses_vetoes_and_takes_over(graph, ship, under_way, sail):
     node = under_way()
-    assert graph.call(ship, 'trial/pause').success
+    assert graph.call('trial/pause').success
     sail(1.0)
     assert stands(ship, sail)
     assert ship.status.values['mode'] == 'paused'
-    assert graph.call(ship, 'trial/resume').success
-    answer = graph.call(ship, 'trial/veto')
+    assert graph.call('trial/resume').success
+    answer = graph.call('trial/veto')
     assert answer.message.startswith('400 m at 2.10 m/s')
     sail(1.0)
     assert ship.status.values['port_warp'] == '350'
-    assert graph.call(ship, 'trial/take_over').success
+    assert graph.call('trial/take_over').success
     graph.settle()
     heard = len(ship.answers)
     sail(3.0)
     assert len(ship.answers) == heard
-    refused = graph.call(ship, 'trial/take_over')
+    refused = graph.call('trial/take_over')
     assert refused.success
     assert node.statuses()[0].level == WARN
 
@@ -229,7 +229,7 @@ def test_a_command_of_another_time_does_not_take_over(ship, under_way, sail):
 def test_killed_and_restarted_it_goes_on(graph, ship, trial, under_way, sail, tmp_path):
     state = str(tmp_path / 'trial.json')
     node = under_way(state=state)
-    graph.call(ship, 'trial/veto')
+    graph.call('trial/veto')
     sail(5.0)
     before = ship.lengths
     graph.executor.remove_node(node)

@@ -27,6 +27,7 @@ EXECUTABLES = {
     'nmea_out',
     'foxglove_node',
     'view_node',
+    'tether_node',
     'trawl',
 }
 

@@ -1,4 +1,4 @@
-"""What a full ROS 2, rosdep and the install guide's line of pip give is enough for every executable."""
+"""What a full ROS 2, rosdep and the guide's line of pip give is enough for every executable."""
 
 import ast
 import importlib.metadata as metadata
@@ -17,8 +17,17 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[2]
-OPTIONAL = {'websockets', 'rerun', 'rerun_cli', 'moordyn', 'moorpy', 'trawlkit', 'tf2_msgs'}
-"""Of extras; each is looked for where it is used, and its absence is a sentence."""
+OPTIONAL = {
+    'websockets',
+    'rerun',
+    'rerun_cli',
+    'moordyn',
+    'moorpy',
+    'trawlkit',
+    'tf2_msgs',
+    'pytest',
+}
+"""Of extras, looked for where they are used, and pytest, whose plugin only pytest loads."""
 
 WITH_ANOTHER = {'pydantic_core': 'pydantic', '_typeshed': ''}
 """Modules that come with a distribution, or for type checkers alone."""

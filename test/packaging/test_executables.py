@@ -40,6 +40,7 @@ NODES = (
     'nmea_out',
     'foxglove_node',
     'view_node',
+    'tether_node',
 )
 # What is installed elsewhere is compiled anew there, which takes sim_node a quarter of a minute.
 QUICK = ('vessel_node', 'winch_node')

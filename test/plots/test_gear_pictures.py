@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.gear.load import load_gear
+from trawl_ros.messages.cdr import deserialize
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.model.water import Water
 from trawl_ros.plots.gear import extent, gear_figure
@@ -116,7 +117,9 @@ def test_fish_are_drawn_where_they_are_and_do_not_widen_the_views(bag, known, ka
     near = SchoolTruth(behind + [0.0, 0.0, -70.0], np.array([40.0, 20.0, 10.0]), 1.0)
     far = SchoolTruth(behind + [9e3, 0.0, -70.0], np.array([40.0, 20.0, 10.0]), 1.0)
     picture = replace(known.picture_of(truth), schools=(near, far))
-    shape = gear_shape(Moment(60.0, {GEAR: gear_markers(picture)[1]}), tow, kaifuha)
+    drawn = gear_markers(picture)[1]
+    markers = deserialize(drawn.data, drawn.__msgtype__)
+    shape = gear_shape(Moment(60.0, {GEAR: markers}), tow, kaifuha)
     fish = [strand.pieces.reshape(-1, 3) for strand in shape.strands if strand.name == SCHOOLS]
     np.testing.assert_allclose(fish[0].mean(axis=0), [350.0, 0.0, -70.0], atol=0.5)
     assert np.ptp(fish[0][:, 2]) == pytest.approx(10.0)

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.reading import quaternion_of
 from trawl_ros.simulation.simulation import Simulation, tow_of
 
 
@@ -77,3 +78,12 @@ def test_the_picture_shows_every_bar_with_its_tension(simulation: Simulation) ->
     tensions = bar_tensions(model, now.motion.state, tow_of(model, now.ship, now.winches))
     assert warp.tension == pytest.approx(tensions[: model.warp_segments].mean())
     assert len(warp.points) == model.warp_segments + 1
+
+
+def test_a_quaternion_is_that_of_its_rotation_with_the_scalar_not_negative():
+    turns = Rotation.random(200, random_state=3).as_matrix()
+    halves = [np.diag(signs) for signs in ((1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0))]
+    for turn in (*turns, *halves, np.eye(3)):
+        quaternion = quaternion_of(turn)
+        assert quaternion[3] >= 0.0
+        assert np.allclose(Rotation.from_quat(quaternion).as_matrix(), turn, atol=1e-12)

@@ -7,6 +7,7 @@ import pytest
 
 from trawl_ros.core.errors import MessageError
 from trawl_ros.core.time import SECOND
+from trawl_ros.messages.cdr import deserialize
 from trawl_ros.messages.diagnostics import OK, Status, diagnostic_array
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.to_messages import sample_message
@@ -74,7 +75,8 @@ def test_markers_draw_the_gear_and_truth_once_they_are_silent(reader, known):
         truth = known.truth_at(second)
         messages = truth_messages(truth)
         if second < 20:
-            messages.append(gear_markers(known.picture_of(truth)))
+            topic, drawn = gear_markers(known.picture_of(truth))
+            messages.append((topic, deserialize(drawn.data, drawn.__msgtype__)))
         sources += [gear.source for gear in of(Gear, taken(reader, *messages))]
     assert sources[:20] == ['truth'] * 20
     (later,) = set(sources[20:])

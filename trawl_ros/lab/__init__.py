@@ -1,1 +1,1 @@
-"""Validation, benchmark and demo of the package; no other part imports them."""
+"""Validation, benchmark and demo of the package; only `testing/` imports them."""

@@ -10,6 +10,7 @@ from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_typestore
 
 from trawl_ros.core.errors import MessageError
+from trawl_ros.messages.cdr_writer import Encoded
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 """Type store: types are named 'package/msg/Name', and its classes are the project's messages."""
@@ -25,6 +26,8 @@ def serialize(message: Any, type_name: str | None = None) -> bytes:
 
     ``type_name`` may be left out: messages carry their own.
     """
+    if isinstance(message, Encoded):
+        return message.data
     return bytes(STORE.serialize_cdr(message, type_name or message.__msgtype__))
 
 

@@ -5,16 +5,18 @@ marker instead of adding another.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.time import SECOND
+from trawl_ros.messages.cdr_writer import CdrWriter, Encoded
 from trawl_ros.messages.pieces import TopicMessage
-from trawl_ros.messages.stamps import header
 from trawl_ros.records.topics import DOOR_FRAMES, MAP, VESSEL, WINCH_NAMES
-from trawl_ros.records.truth import SIDES, DoorTruth, GearPicture, Polyline, SchoolTruth
+from trawl_ros.records.truth import SIDES, GearPicture, Polyline, SchoolTruth
 
 FULL_SCALE = 200e3
 """Tension (N) drawn in full red; it is fixed, so that colours of two pictures can be compared."""
@@ -39,12 +41,30 @@ _BEAM_PER_BLOCKS = 20.0 / 12.0
 RAMP = np.array([[0.15, 0.35, 0.85], [0.10, 0.75, 0.55], [0.95, 0.80, 0.15], [0.85, 0.10, 0.10]])
 """Red, green and blue (0 to 1) at equal steps from slack to `FULL_SCALE`."""
 
-_STEEL = ros.std_msgs__msg__ColorRGBA(0.45, 0.45, 0.50, 1.0)
-_FISH = ros.std_msgs__msg__ColorRGBA(0.95, 0.65, 0.40, 0.5)
+_Kind = ros.visualization_msgs__msg__Marker
+_Colour = tuple[float, float, float, float]
+_STEEL: _Colour = (0.45, 0.45, 0.50, 1.0)
+_FISH: _Colour = (0.95, 0.65, 0.40, 0.5)
+_NO_BYTES = np.zeros(0, np.uint8)
 
 
-def gear_markers(picture: GearPicture) -> TopicMessage:
-    """Draw the gear in the frame ``map``.
+@dataclass(frozen=True)
+class _Marker:
+    """Marker: scale (m), colour, points (n, 3) and colours of points (n, 4), pose in ``map``."""
+
+    namespace: str
+    kind: int
+    scale: Sequence[float]
+    colour: Sequence[float]
+    points: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    colours: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))
+    position: Any = (0.0, 0.0, 0.0)
+    orientation: Any = (0.0, 0.0, 0.0, 1.0)
+    number: int = 0
+
+
+def gear_markers(picture: GearPicture, frame: str = MAP) -> TopicMessage:
+    """Draw the gear in a frame, as a message that is encoded already.
 
     A rope becomes a line, all netting one marker, a door a box, a school of fish an ellipsoid. The
     ship's waterline lies ahead of the towing blocks.
@@ -56,96 +76,66 @@ def gear_markers(picture: GearPicture) -> TopicMessage:
     for line in picture.lines:
         named.setdefault(line.name, []).append(line)
     markers = [
-        _line(picture.stamp, lines[0]) if len(lines) == 1 else _lines(picture.stamp, name, lines)
-        for name, lines in named.items()
+        _line(lines[0]) if len(lines) == 1 else _lines(name, lines) for name, lines in named.items()
     ]
+    length, height = picture.door_size
     for side, door in zip(SIDES, picture.doors, strict=True):
-        markers.append(_door(picture.stamp, side, door, picture.door_size))
-    markers += _hull(picture.stamp, named)
-    markers += [_school(picture.stamp, k, school) for k, school in enumerate(picture.schools)]
-    return 'truth/gear', ros.visualization_msgs__msg__MarkerArray(markers)
+        size = (length, THICKNESS * length, height)
+        markers.append(
+            _Marker(
+                DOOR_FRAMES[side], _Kind.CUBE, size, _STEEL,
+                position=door.position, orientation=door.orientation,
+            )
+        )  # fmt: skip
+    markers += _hull(named)
+    markers += [_school(number, school) for number, school in enumerate(picture.schools)]
+    writer = CdrWriter()
+    writer.numbers('I', len(markers))
+    for marker in markers:
+        _write(writer, picture.stamp, frame, marker)
+    return 'truth/gear', Encoded('visualization_msgs/msg/MarkerArray', writer.data())
 
 
-def tension_colour(tension: float) -> ros.std_msgs__msg__ColorRGBA:
-    """Colour a tension (N) from blue (slack) over green and yellow to red (`FULL_SCALE`)."""
-    return _colours(np.array([tension]))[0]
+def tension_colours(tensions: FloatArray) -> FloatArray:
+    """Colour tensions (n,) (N) from blue (slack) over green and yellow to red (`FULL_SCALE`).
 
-
-def _colours(tensions: FloatArray) -> list[ros.std_msgs__msg__ColorRGBA]:
+    Returns red, green, blue and opacity, shape (n, 4).
+    """
     places = np.clip(tensions / FULL_SCALE, 0.0, 1.0) * (len(RAMP) - 1)
-    channels = [np.interp(places, np.arange(len(RAMP)), channel).tolist() for channel in RAMP.T]
-    return [
-        ros.std_msgs__msg__ColorRGBA(red, green, blue, 1.0)
-        for red, green, blue in zip(*channels, strict=True)
-    ]
+    channels = [np.interp(places, np.arange(len(RAMP)), channel) for channel in RAMP.T]
+    return np.column_stack([*channels, np.ones(len(tensions))])
 
 
-def _points(points: FloatArray) -> list[ros.geometry_msgs__msg__Point]:
-    return [ros.geometry_msgs__msg__Point(*point) for point in points.tolist()]
+def _line(line: Polyline) -> _Marker:
+    (colour,) = tension_colours(np.array([line.tension])).tolist()
+    width = (LINE_WIDTH, 0.0, 0.0)
+    return _Marker(line.name, _Kind.LINE_STRIP, width, colour, line.points)
 
 
-def _line(stamp: int, line: Polyline) -> Any:
-    return _marker(
-        stamp,
-        line.name,
-        ros.visualization_msgs__msg__Marker.LINE_STRIP,
-        scale=(LINE_WIDTH, 0.0, 0.0),
-        colour=tension_colour(line.tension),
-        points=_points(line.points),
-    )
-
-
-def _lines(stamp: int, name: str, lines: Sequence[Polyline]) -> Any:
+def _lines(name: str, lines: Sequence[Polyline]) -> _Marker:
     """Line-list marker of several lines; each pair of points has a colour at both ends."""
     sizes = np.array([len(line.points) for line in lines])
     every = np.concatenate([line.points for line in lines])
     # Each point but the last of a line begins a pair.
     begins = np.delete(np.arange(len(every)), np.cumsum(sizes) - 1)
     pairs = every[np.column_stack([begins, begins + 1]).ravel()]
-    colours = _colours(np.array([line.tension for line in lines]))
-    marker = _marker(
-        stamp,
-        name,
-        ros.visualization_msgs__msg__Marker.LINE_LIST,
-        scale=(LINE_WIDTH, 0.0, 0.0),
-        colour=_STEEL,
-        points=_points(pairs),
-    )
-    marker.colors = [
-        colour
-        for size, colour in zip(sizes.tolist(), colours, strict=True)
-        for _ in range(2 * (size - 1))
-    ]
-    return marker
+    colours = tension_colours(np.array([line.tension for line in lines]))
+    each = np.repeat(colours, 2 * (sizes - 1), axis=0)
+    return _Marker(name, _Kind.LINE_LIST, (LINE_WIDTH, 0.0, 0.0), _STEEL, pairs, each)
 
 
-def _door(stamp: int, side: str, door: DoorTruth, size: tuple[float, float]) -> Any:
-    length, height = size
-    return _marker(
-        stamp,
-        DOOR_FRAMES[side],
-        ros.visualization_msgs__msg__Marker.CUBE,
-        scale=(length, THICKNESS * length, height),
-        colour=_STEEL,
-        position=door.position,
-        orientation=door.orientation,
-    )
-
-
-def _school(stamp: int, number: int, school: SchoolTruth) -> Any:
-    marker = _marker(
-        stamp,
+def _school(number: int, school: SchoolTruth) -> _Marker:
+    return _Marker(
         'schools',
-        ros.visualization_msgs__msg__Marker.SPHERE,
-        scale=school.size,
-        colour=_FISH,
+        _Kind.SPHERE,
+        school.size.tolist(),
+        _FISH,
         position=school.position,
+        number=number,
     )
-    marker.id = number
-    return marker
 
 
-def _hull(stamp: int, named: Mapping[str, Sequence[Polyline]]) -> list[Any]:
+def _hull(named: Mapping[str, Sequence[Polyline]]) -> list[_Marker]:
     """Waterline of the ship; empty without both warps, whose ends give the ship's position."""
     if not all(name in named for name in WINCH_NAMES):
         return []
@@ -157,51 +147,31 @@ def _hull(stamp: int, named: Mapping[str, Sequence[Polyline]]) -> list[Any]:
         + VESSEL_LENGTH * _HULL[:, :1] * ahead
         + _BEAM_PER_BLOCKS * _HULL[:, 1:] * across
     )
-    return [
-        _marker(
-            stamp,
-            VESSEL,
-            ros.visualization_msgs__msg__Marker.LINE_STRIP,
-            scale=(LINE_WIDTH, 0.0, 0.0),
-            colour=_STEEL,
-            points=_points(np.vstack([outline, outline[:1]])),
-        )
-    ]
+    closed = np.vstack([outline, outline[:1]])
+    return [_Marker(VESSEL, _Kind.LINE_STRIP, (LINE_WIDTH, 0.0, 0.0), _STEEL, closed)]
 
 
-def _marker(
-    stamp: int,
-    namespace: str,
-    kind: int,
-    *,
-    scale: Any,
-    colour: ros.std_msgs__msg__ColorRGBA,
-    points: Sequence[ros.geometry_msgs__msg__Point] = (),
-    position: Any = (0.0, 0.0, 0.0),
-    orientation: Any = (0.0, 0.0, 0.0, 1.0),
-) -> ros.visualization_msgs__msg__Marker:
-    no_stamp = header(0, '')
-    return ros.visualization_msgs__msg__Marker(
-        header=header(stamp, MAP),
-        ns=namespace,
-        id=0,
-        type=kind,
-        action=ros.visualization_msgs__msg__Marker.ADD,
-        pose=ros.geometry_msgs__msg__Pose(
-            ros.geometry_msgs__msg__Point(*map(float, position)),
-            ros.geometry_msgs__msg__Quaternion(*map(float, orientation)),
-        ),
-        scale=ros.geometry_msgs__msg__Vector3(*map(float, scale)),
-        color=colour,
-        lifetime=ros.builtin_interfaces__msg__Duration(0, 0),
-        frame_locked=False,
-        points=list(points),
-        colors=[],
-        texture_resource='',
-        texture=ros.sensor_msgs__msg__CompressedImage(no_stamp, '', np.zeros(0, np.uint8)),
-        uv_coordinates=[],
-        text='',
-        mesh_resource='',
-        mesh_file=ros.visualization_msgs__msg__MeshFile('', np.zeros(0, np.uint8)),
-        mesh_use_embedded_materials=False,
-    )
+def _write(writer: CdrWriter, stamp: int, frame: str, marker: _Marker) -> None:
+    """Write a ``visualization_msgs/Marker``, its fields in order."""
+    writer.numbers('iI', *divmod(int(stamp), SECOND))
+    writer.text(frame)
+    writer.text(marker.namespace)
+    writer.numbers('3i', marker.number, marker.kind, _Kind.ADD)
+    writer.numbers('7d', *marker.position, *marker.orientation)
+    writer.numbers('3d', *marker.scale)
+    writer.numbers('4f', *marker.colour)
+    writer.numbers('iI', 0, 0)  # lifetime
+    writer.numbers('?', False)  # frame_locked
+    writer.rows(marker.points.astype('<f8'))
+    writer.rows(marker.colours.astype('<f4'))
+    writer.text('')  # texture_resource
+    writer.numbers('iI', 0, 0)  # texture: stamp, frame, format, data
+    writer.text('')
+    writer.text('')
+    writer.rows(_NO_BYTES)
+    writer.rows(_NO_BYTES)  # uv_coordinates
+    writer.text('')  # text
+    writer.text('')  # mesh_resource
+    writer.text('')  # mesh_file: name, data
+    writer.rows(_NO_BYTES)
+    writer.numbers('?', False)  # mesh_use_embedded_materials

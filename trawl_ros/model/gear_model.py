@@ -42,6 +42,21 @@ OUTWARD = np.array([1.0, -1.0])
 
 
 @dataclass(frozen=True)
+class DrawnLines:
+    """Lines to be drawn, one after the other.
+
+    ``points`` and ``bars`` are the numbers of all lines, ``first_points`` and ``first_bars`` the
+    places in them at which each line begins.
+    """
+
+    names: tuple[str, ...]
+    points: IntArray
+    bars: IntArray
+    first_points: list[int]
+    first_bars: IntArray
+
+
+@dataclass(frozen=True)
 class NodeLayout:
     """Node numbers of warps, bridles, net, headrope, footrope and kite.
 
@@ -73,6 +88,15 @@ class NodeLayout:
     kite: KiteNodes
     top_warp_bars: IntArray
     lines: tuple[tuple[str, IntArray, IntArray], ...]
+
+    @cached_property
+    def drawn(self) -> DrawnLines:
+        """All of ``lines`` as arrays, for pictures."""
+        names, points, bars = zip(*self.lines)
+        ends = [np.cumsum([0, *map(len, groups)])[:-1] for groups in (points, bars)]
+        return DrawnLines(
+            names, np.concatenate(points), np.concatenate(bars), ends[0].tolist(), ends[1]
+        )
 
     @property
     def bridles_by_side(self) -> tuple[tuple[IntArray, ...], tuple[IntArray, ...]]:

@@ -35,7 +35,7 @@ from trawl_ros.nodes.towing import (
     commanded_tow,
     fallen_sides,
 )
-from trawl_ros.records.topics import CLOCK, TRUTH
+from trawl_ros.records.topics import CLOCK, MAP, TRUTH
 from trawl_ros.records.towing_limits import LIMITS
 from trawl_ros.records.truth import Truth
 from trawl_ros.scenario.records import MAX_TRUTH_HZ
@@ -96,6 +96,8 @@ class SimNode(TrawlNode):
     SPECS: ClassVar = (
         Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package.'),
         Text('scenario', '', 'Scenario file or name: its gear, start, commands and end are used.'),
+        Text('winches', 'scenario', 'Who moves the winches in a scenario: its steps, or '
+             'command/winch.', choices=('scenario', 'command')),
         Flag('exit_at_end', False, 'Whether to end with the scenario.'),
         Number('warp_length_m', DEFAULT_START[0], 'm', *LIMITS.warp_m,
                'Length of both warps at the start.'),
@@ -317,10 +319,10 @@ class SimNode(TrawlNode):
         if rate == 0.0 or time_s < self._next_gear_s - 1e-9:
             return
         self._next_gear_s = time_s + 1.0 / rate
-        # Drawing takes as long as towing for a second, so nobody's picture is not drawn.
+        # Without subscribers no picture is drawn.
         if self.advertise(GEAR_MARKERS).get_subscription_count():
             picture = replace(self._tow.simulation.picture(), stamp=stamp)
-            self.send(*gear_markers(picture))
+            self.send(*gear_markers(picture, self.frame_names.get(MAP, MAP)))
 
     def _end_if_done(self) -> None:
         if not self.parameters['exit_at_end'] or self.exit_code is not None:
@@ -338,7 +340,11 @@ class SimNode(TrawlNode):
     def _command_winches(self, message: Any) -> None:
         wanted = wanted_lengths(message)
         speeds = self._wanted_speeds(message)
-        self._commanded(WINCH_COMMAND, message).command_winches(*wanted, speeds)
+        if isinstance(self._tow, Trial) and self.parameters['winches'] == 'command':
+            self._watch(WINCH_COMMAND, message)
+            self._tow.command_winches(*wanted)
+        else:
+            self._commanded(WINCH_COMMAND, message).command_winches(*wanted, speeds)
 
     def _wanted_speeds(self, message: Any) -> tuple[float, float]:
         """Return the greatest speeds of the winches (m/s) by the parameter for velocities."""
@@ -365,9 +371,12 @@ class SimNode(TrawlNode):
             raise MessageError(
                 f'{topic}: the scenario is in command; expected no command beside it'
             )
-        most = self.parameters['max_command_age_s']
-        self._watches[topic].take(stamp_of(message), self.now(), tow.time_s, most)
+        self._watch(topic, message)
         return tow
+
+    def _watch(self, topic: str, message: Any) -> None:
+        most = self.parameters['max_command_age_s']
+        self._watches[topic].take(stamp_of(message), self.now(), self._tow.time_s, most)
 
     def _watch_commands(self) -> None:
         tow, timeout = self._tow, self.parameters['command_timeout_s']

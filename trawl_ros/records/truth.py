@@ -7,6 +7,7 @@ Quaternions are ``(x, y, z, w)``.
 
 import math
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -158,8 +159,7 @@ class Truth:
     observables: Observables | None = None
 
 
-@dataclass(frozen=True)
-class Polyline:
+class Polyline(NamedTuple):
     """Polyline of a rope or a row of netting: points (n, 3) in ``map``, tension (N)."""
 
     name: str

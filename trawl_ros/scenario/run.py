@@ -5,6 +5,7 @@ Node and command line share it, so a scenario gives the same data in both.
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 from trawl_ros.control.winch_controller import WinchController
 from trawl_ros.core.errors import ScenarioError
@@ -14,6 +15,7 @@ from trawl_ros.scenario.bridge import Bridge
 from trawl_ros.scenario.scenario import Scenario
 from trawl_ros.scenario.sea import build_sea
 from trawl_ros.scenario.steadiness import require_steady_states
+from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.seabed import SeabedTouched
 from trawl_ros.simulation.simulation import NANOSECONDS, Simulation
 from trawl_ros.solver.stepper import StepFailed
@@ -107,6 +109,7 @@ class Trial:
         self._given = 0
         self._winches = winches
         self._bridge = Bridge(scenario, winches)
+        self._wanted: tuple[float | None, float | None] = (None, None)
 
     @property
     def time_s(self) -> float:
@@ -118,6 +121,24 @@ class Trial:
         self.simulation.reset()
         self._given = 0
         self._bridge = Bridge(self.scenario, self._winches)
+        self._wanted = (None, None)
+
+    def command_winches(self, port: float | None, starboard: float | None) -> None:
+        """Command warp lengths (m) in place of the scenario's; None changes nothing there."""
+        before = self._wanted
+        self._wanted = (
+            before[0] if port is None else port,
+            before[1] if starboard is None else starboard,
+        )
+
+    def _command(self) -> Command:
+        planned = self._bridge.command(self.time_s)
+        port, starboard = self._wanted
+        return replace(
+            planned,
+            port_length=planned.port_length if port is None else port,
+            starboard_length=planned.starboard_length if starboard is None else starboard,
+        )
 
     def step(self) -> Truth | None:
         """Advance by one period of the truth.
@@ -136,7 +157,7 @@ class Trial:
             return None
         if self._given:
             for _ in range(self._steps_per_truth):
-                self.simulation.command = self._bridge.command(self.time_s)
+                self.simulation.command = self._command()
                 self._advance()
         self._given += 1
         truth = self.simulation.truth()

@@ -1,9 +1,8 @@
 """Ground truth of a state: the interface between the model and everything that observes it."""
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
-from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.assembly import bar_tensions, points_of
 from trawl_ros.model.board import flow_at, hydrodynamics, mirrored_axes
 from trawl_ros.model.gear_model import OUTWARD, GearModel
@@ -38,7 +37,7 @@ def _doors(model: GearModel, state: State) -> tuple[DoorTruth, DoorTruth]:
     turn = state.board_rotations
     back = transpose(turn)
     lean = np.arccos(np.clip(turn[:, 2, 2], -1.0, 1.0))
-    quaternions = Rotation.from_matrix(turn).as_quat(canonical=True)
+    quaternions = [quaternion_of(one) for one in turn]
 
     def door(k: int) -> DoorTruth:
         return DoorTruth(
@@ -54,6 +53,27 @@ def _doors(model: GearModel, state: State) -> tuple[DoorTruth, DoorTruth]:
         )
 
     return door(0), door(1)
+
+
+def quaternion_of(rotation: FloatArray) -> FloatArray:
+    """Return the quaternion (x, y, z, w) of a rotation matrix (3, 3), with w ≥ 0.
+
+    The largest component comes first (Shepperd 1978). SciPy checks the matrix, at ten times the
+    cost.
+    """
+    m = rotation.tolist()
+    trace = m[0][0] + m[1][1] + m[2][2]
+    i = max(range(3), key=lambda k: m[k][k])
+    j, k = (i + 1) % 3, (i + 2) % 3
+    if trace > m[i][i]:
+        found = np.array([m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1], 1.0 + trace])
+    else:
+        found = np.empty(4)
+        found[i] = 1.0 - trace + 2.0 * m[i][i]
+        found[j], found[k] = m[j][i] + m[i][j], m[k][i] + m[i][k]
+        found[3] = m[k][j] - m[j][k]
+    quaternion: FloatArray = found / np.copysign(np.linalg.norm(found), found[3])
+    return quaternion
 
 
 def read_truth(
@@ -78,7 +98,7 @@ def read_truth(
             vertical_opening=float(observables.vertical_opening),
             headrope_depth=float(observables.net_depth),
             sonar_position=state.nodes[head[len(head) // 2]],
-            sonar_orientation=Rotation.from_matrix(sonar).as_quat(canonical=True),
+            sonar_orientation=quaternion_of(sonar),
             section=section_of(model, state, sonar),
         ),
         vessel=VesselTruth(
@@ -156,23 +176,19 @@ def _resampled(points: FloatArray, number: int) -> FloatArray:
     return np.stack([np.interp(along, steps, axis) for axis in points.T], axis=1)
 
 
-def _means(values: FloatArray, groups: list[IntArray]) -> list[float]:
-    """Return the means of ``values`` over index groups, vectorised for thousands of groups."""
-    sizes = np.array([len(group) for group in groups])
-    starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
-    sums = np.add.reduceat(values[np.concatenate(groups)], starts)
-    return list((sums / sizes).tolist())
-
-
 def read_picture(model: GearModel, stamp: int, state: State, tow: Tow) -> GearPicture:
     """Return a picture of the gear for drawing: every rope and bar with its tension."""
-    points = points_of(model, state, tow).positions
-    tensions = _means(bar_tensions(model, state, tow), [bars for *_, bars in model.layout.lines])
+    drawn = model.layout.drawn
+    places = points_of(model, state, tow).positions[drawn.points]
+    tensions = np.add.reduceat(bar_tensions(model, state, tow)[drawn.bars], drawn.first_bars)
+    means = (tensions / np.diff(drawn.first_bars, append=len(drawn.bars))).tolist()
     return GearPicture(
         stamp=stamp,
         lines=tuple(
-            Polyline(name, points[numbers], tension)
-            for (name, numbers, _), tension in zip(model.layout.lines, tensions, strict=True)
+            Polyline(name, places[begin:end], tension)
+            for name, begin, end, tension in zip(
+                drawn.names, drawn.first_points, [*drawn.first_points[1:], None], means
+            )
         ),
         doors=_doors(model, state),
         door_size=(model.board.chord, model.board.span),

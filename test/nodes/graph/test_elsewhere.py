@@ -73,7 +73,7 @@ def test_the_answer_to_finish_names_it_too(graph):
     in_namespace(graph, Driver, '/ship')
     node = graph.add(IdentificationNode)
     graph.until(lambda: 'in namespace /ship' in said(node))
-    answer = graph.call(node, 'identification/finish')
+    answer = graph.call('identification/finish')
     assert not answer.success
     assert 'no readings on ' in answer.message
     assert 'in namespace /ship' in answer.message

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trawl_ros.messages.cdr import serialize
+from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.diagnostics import diagnostic_array
 from trawl_ros.messages.estimates import estimate_message
 from trawl_ros.messages.markers import gear_markers
@@ -35,8 +35,9 @@ def test_a_header_is_found(message):
 def test_markers_have_the_stamp_of_the_first():
     rope = Polyline('warp', np.zeros((2, 3)), 0.0)
     doors = partial_truth(STAMP).doors
-    _, array = gear_markers(GearPicture(STAMP, (rope,), doors, (1.0, 2.0)))
-    assert header_stamp(array.__msgtype__, serialize(array)) == STAMP
+    _, message = gear_markers(GearPicture(STAMP, (rope,), doors, (1.0, 2.0)))
+    assert header_stamp(message.__msgtype__, serialize(message)) == STAMP
+    array = deserialize(serialize(message), message.__msgtype__)
     array.markers = []
     assert header_stamp(array.__msgtype__, serialize(array)) is None
 

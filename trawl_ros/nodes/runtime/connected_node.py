@@ -13,6 +13,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 from std_srvs.srv import Trigger
 
 from trawl_ros.core.errors import MessageError, TrawlError
@@ -20,10 +21,7 @@ from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import SENTENCE
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.transforms import rename_frames
-from trawl_ros.nodes.graph.graph_checks import (
-    SHARED,
-    of_one_node,
-)
+from trawl_ros.nodes.graph.graph_checks import SHARED, UNKNOWN, of_one_node
 from trawl_ros.nodes.graph.source import Source, asks_more, matching
 from trawl_ros.nodes.runtime.incoming import (
     Incoming,
@@ -55,6 +53,20 @@ class Listener:
     subscribe: Callable[[QoSProfile, bool], Subscription]
 
 
+KNOWN_S = 5.0
+"""Wall time (s) for which endpoints of a topic are not asked for again while their number is the
+same: each diagnostic report of each node would take 15 ms."""
+
+
+@dataclass(frozen=True)
+class _Known:
+    """Endpoints of a topic, as they were when there were so many."""
+
+    count: int
+    until: float
+    endpoints: list[TopicEndpointInfo]
+
+
 class ConnectedNode(Node):
     """Node connected by topics and services: ROS gets and gives bytes, all of them counted.
 
@@ -83,6 +95,7 @@ class ConnectedNode(Node):
         self.traffic = Traffic()
         self._refused: dict[str, str] = {}
         self._sources: dict[str, Source] = {}
+        self._known: dict[tuple[str, str], _Known] = {}
         self.turns = Turns()
         super().__init__(name, **kwargs)
         self.exit_code: int | None = None
@@ -230,6 +243,26 @@ class ConnectedNode(Node):
         subscription = subscribe(copy(profile), overridable)
         self._listeners[full] = Listener(subscription, type_name, subscribe)
         self.traffic.expect('received', full)
+
+    def get_publishers_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
+        """Return the publishers of a topic; asked of ROS again when their number changes."""
+        count = self.count_publishers(topic)
+        return self._known_endpoints(('publishers', topic), count)
+
+    def get_subscriptions_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
+        """Return the subscriptions of a topic; asked of ROS again when their number changes."""
+        count = self.count_subscribers(topic)
+        return self._known_endpoints(('subscriptions', topic), count)
+
+    def _known_endpoints(self, of: tuple[str, str], count: int) -> list[TopicEndpointInfo]:
+        known, now = self._known.get(of), time.monotonic()
+        if known is None or known.count != count or now > known.until:
+            which, topic = of
+            found = getattr(super(), f'get_{which}_info_by_topic')(topic)
+            named = len(found) == count and all(info.node_name != UNKNOWN for info in found)
+            known = _Known(count, now + (KNOWN_S if named else 0.0), found)
+            self._known[of] = known
+        return known.endpoints
 
     def match_publishers(self) -> None:
         """Subscribe again, asking for less QoS, where a publisher would not be heard otherwise."""
