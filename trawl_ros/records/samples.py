@@ -355,7 +355,7 @@ def _slant_range(side: str) -> Sensor[RangeSample]:
     )  # fmt: skip
     row = _range(
         what, VESSEL, 1.0, f'Acoustic distance from the ship to the {side} door, m.',
-        ('door_sensor_node', 'nmea_in'), (*_IDENTIFIERS, 'view_node'), 0.35,
+        ('door_sensor_node', 'nmea_in'), _READERS, 0.35,
         silence=ACOUSTIC_SILENCE_S, channel=channel, on_course=True,
     )  # fmt: skip
     blank = replace(row.blank, max_range=_MAX_DEPTH_M)
