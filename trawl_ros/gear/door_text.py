@@ -80,7 +80,8 @@ def with_door(text: str, board: BoardRecord, points: FloatArray, *, plate: bool)
         ),
         '',
     ]
-    return text[: first.index] + ('\n' + ' ' * first.column).join(rows) + text[first.index :]
+    between: str = '\n' + ' ' * first.column
+    return text[: first.index] + between.join(rows) + text[first.index :]
 
 
 def write_door(path: Path, text: str) -> GearRecord:

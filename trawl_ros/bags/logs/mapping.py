@@ -97,7 +97,7 @@ class LogMapping(Record):
 
     @model_validator(mode='after')
     def _fits_the_topics(self) -> 'LogMapping':
-        faults = []
+        faults: list[str] = []
         for topic, mapping in self.topics.items():
             faults += self._faults(topic, mapping)
         if faults:
