@@ -43,9 +43,11 @@ class SweptOptions:
     neighbours, outlier_limit
         Readings on either side from whose median a reading is judged, and the number of robust
         standard deviations beyond which it is left out.
+    ground_speed_std
+        What a receiver's filter leaves in the mean speed over ground, m/s (std).
     width_std, height_std
         Relative standard deviations of the mouth's width over the door spread, and of its height,
-        of the model. They are those of the study in `test/api/test_swept.py`.
+        of the model. All three are those of hauls 100 to 330 of `test/api/test_swept.py`.
     step_s
         Time step of the integrals, about, s.
     """
@@ -53,8 +55,9 @@ class SweptOptions:
     fishing_fraction: float = 0.5
     neighbours: int = 10
     outlier_limit: float = 4.0
+    ground_speed_std: float = 0.0015
     width_std: float = 0.025
-    height_std: float = 0.2
+    height_std: float = 0.17
     step_s: float = 2.0
 
 
@@ -199,6 +202,7 @@ def _speeds(
     if 'ground_east' in on:
         speed = np.hypot(on['ground_east'], on['ground_north'])
         error = max(_std(name, series, times) for name in ('ground_east', 'ground_north'))
+        error = math.hypot(error, OPTIONS.ground_speed_std)
         ground = Factor(speed, error / float(speed.mean()))
     if 'speed' in on:
         water = _measured('speed', on, series, times)

@@ -351,7 +351,7 @@ def _slant_range(side: str) -> Sensor[RangeSample]:
     what = f'{side}_slant'
     channel = Channel(
         f'{what}_range', RANGES[what], 'm', 1.0, 6000.0, 1.0, 2.0, 0.005, 0.031, 36.0,
-        required=False, lively=True, leap=50.0,
+        required=False, lively=True, leap=50.0, usual=False,
     )  # fmt: skip
     row = _range(
         what, VESSEL, 1.0, f'Acoustic distance from the ship to the {side} door, m.',

@@ -178,8 +178,9 @@ PROBES = (
     b'[NOTUS TEXTFILE V3.1]\nTow Date: 11-Jul-2019 7:51:17\nPlacement: Starboard\n'
     b'Code,Time,Range(m),Data(m),Comment\nC24S,07:53:27,54.6,35.2,\nC24S,23:53:27,---,---,\n',
     b'CPU Date and Time,GPS Date,GPS Time,Latitude,Longitude,Speed,Heading,Validity,'
-    b'Transducer Name,Sensor Name,Sensor Value,Error Code,Hydrophone,Signal Strength\nFri Aug 16 16:24:22 2013,'
-    b'16-Aug-2013,192424,47 58.5 N,064 57.9 W,2.1,86.2,A,DoorSpread,DoorMaster,10.0,D,S,5.0\n',
+    b'Transducer Name,Sensor Name,Sensor Value,Error Code,Hydrophone,Signal Strength\n'
+    b'Fri Aug 16 16:24:22 2013,16-Aug-2013,192424,47 58.5 N,064 57.9 W,2.1,86.2,A,DoorSpread,'
+    b'DoorMaster,10.0,D,S,5.0\n',
     b'FileName: X\n Date Time Latitude Longitude Speed Primary DoorSpread\n'
     b'100811  205148  48   4.9282 N  63  41.4732 W   2.1        2.2        6.3*\n',
     b'"Filename: x.SCD"\n"DI1"\n"1997-07-14""11:41:29""N047:54.860""W063:35.500"    0.0   0.00     '
