@@ -6,7 +6,9 @@ registry states them.
 """
 
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,7 +28,7 @@ from trawl_ros.instruments.parameters import InstrumentParameters, default_instr
 from trawl_ros.instruments.vessel import VesselInstruments
 from trawl_ros.instruments.winch import WinchInstruments
 from trawl_ros.records.channels import CHANNELS, Channel
-from trawl_ros.records.samples import RangeSample, VelocitySample, WinchSample
+from trawl_ros.records.samples import RangeSample, Sample, VelocitySample, WinchSample
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.records.truth import Truth
 
@@ -48,7 +50,7 @@ def coarse() -> GearRecord:
     return load_gear('kaifuha').refined(net=0.25)
 
 
-def exact(spread: float = 150.0, speed: float = 2.0, seconds: int = 600):
+def exact(spread: float = 150.0, speed: float = 2.0, seconds: int = 600) -> Iterator[Sample]:
     """Samples of a haul in which nothing changes, without errors."""
     for second in range(seconds):
         stamp = second * SECOND
@@ -119,9 +121,9 @@ def test_the_command_says_what_is_measured(tmp_path: Path) -> None:
     assert 'measured' in row
 
 
-def changed_gear(draws: np.random.Generator) -> dict[str, object]:
+def changed_gear(draws: np.random.Generator) -> dict[str, Any]:
     """A gear that differs from its file as gears do."""
-    data = yaml.safe_load(share_path('config', 'gear', 'kaifuha.yaml').read_text())
+    data: dict[str, Any] = yaml.safe_load(share_path('config', 'gear', 'kaifuha.yaml').read_text())
     data['netting']['around'] = 12
     for name in ('a2', 'c2', 'a1'):
         data['board']['coefficients'][name] *= float(1 + 0.05 * draws.normal())
