@@ -47,7 +47,7 @@ class SweptOptions:
         What a receiver's filter leaves in the mean speed over ground, m/s (std).
     width_std, height_std
         Relative standard deviations of the mouth's width over the door spread, and of its height,
-        of the model. All three are those of hauls 100 to 330 of `test/api/test_swept.py`.
+        of the model. They were chosen on gears 100 to 321 of `test/api/test_swept.py`.
     step_s
         Time step of the integrals, about, s.
     """
