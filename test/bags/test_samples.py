@@ -3,9 +3,11 @@
 import itertools
 
 import numpy as np
+import pytest
 
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.bags.writer import BagWriter
+from trawl_ros.core.errors import BagError
 from trawl_ros.estimation.windows.finder import SteadyWindowFinder
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.messages.cdr import serialize
@@ -67,4 +69,5 @@ def test_topics_of_others_are_passed_over(steady_tow, tmp_path):
     velocity = VelocitySample(SECOND, 'water', np.array([2.0, 0.0, 0.0]), 0.0)
     bag = steady_tow.write(tmp_path / 'bag', [velocity])
     assert len(list(SampleStream([bag], NAMESPACE))) == 1
-    assert list(SampleStream([bag], 'elsewhere')) == []
+    with pytest.raises(BagError, match='expected --namespace trawl'):
+        list(SampleStream([bag], 'elsewhere'))

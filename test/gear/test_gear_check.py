@@ -296,3 +296,21 @@ def test_catch_and_kites_are_told(tmp_path: Path) -> None:
     assert 'catch: 6.25 m³ in 2.33 m' in result.output
     # ½ ρ (2 knots)² of 1 m² on either side.
     assert 'side kites: lift of 1085 N' in result.output
+
+
+@pytest.mark.parametrize(
+    ('name', 'old', 'new', 'key'),
+    [
+        ('kaifuha', 'weight_in_water_n_m: 28.0', 'weight_in_water_n_m: 46.0', 'warp.weight_in_w'),
+        ('flume_83_112', 'length_m: 34.1', 'length_m: 60.0', 'headrope.length_m'),
+        ('kaifuha', 'normal_drag: 1.1 ', 'normal_drag: 0.1 ', 'netting'),
+    ],
+)
+def test_values_that_disagree_are_found(
+    name: str, old: str, new: str, key: str, tmp_path: Path
+) -> None:
+    text = share_path('config', 'gear', f'{name}.yaml').read_text()
+    assert old in text
+    path = tmp_path / 'wrong.yaml'
+    path.write_text(text.replace(old, new))
+    assert any(finding.key.startswith(key) for finding in check_gear(path).findings)

@@ -159,6 +159,19 @@ def test_what_instruments_say_comes_back_by_udp_and_a_pseudo_terminal(graph, shi
     assert twice
 
 
+def test_a_chart_plotter_hears_where_the_doors_are(graph, ship):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as plotter:
+        plotter.bind((THIS_MACHINE, 0))
+        plotter.settimeout(10.0)
+        link = f'udp://{THIS_MACHINE}:{plotter.getsockname()[1]}'
+        graph.add(NmeaOut, links=[link], systems=['marport'], plotter=True)
+        graph.until(lambda: all(ship.count_subscribers(ship.full_name(topic)) for topic in TOPICS))
+        for sample in reversed(readings(1)):
+            ship.send(*sample_message(sample))
+            graph.rest(0.1)
+        graph.until(lambda: b'TTM,01' in plotter.recv(2000))
+
+
 def test_noise_is_counted_by_reason_and_what_is_whole_still_comes(graph, ship, port):
     heard(graph, links=[f'udp://:{port}'], systems=['marport', 'ship'])
     opened(graph, ship, f'udp://:{port}')

@@ -292,7 +292,6 @@ def test_a_distance_without_a_least_one_keeps_its_largest(tmp_path):
         ('PXYZL', 'pxyzl', "address: found 'pxyzl'"),
         ('source: its manual', '', 'source'),
         ('{reading', '{text: M, reading', 'found text and reading'),
-        ('winch/joint_states port_length', 'door/spread distance', 'max_range: missing'),
     ],
 )  # fmt: skip
 def test_a_wrong_table_is_refused_with_key_found_and_expected(tmp_path, old, new, complaint):

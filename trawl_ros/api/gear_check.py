@@ -27,6 +27,9 @@ BRIDLE_SUFFIXES = '_bridle', '_sweep', '_backstrop'
 DRAG_SPEEDS_KN = (2.0, 3.0, 4.0)
 """Speeds at which the drag is compared."""
 
+DRAG_MARGINS = (0.6, 1.0)
+"""Factors on the least and largest drag of the formulas; a drag between them is plausible."""
+
 
 @dataclass(frozen=True)
 class GearCheck:
@@ -95,16 +98,16 @@ def check_gear(path: str | Path) -> GearCheck:
     gear = load_gear(path)
     model = build_model(gear)
     area = sum(bar.area * bar.rest for bar in model.net_mesh.bars)
+    drag = {
+        knots: {name: band(area, knots) for name, band in BANDS.items()} for knots in DRAG_SPEEDS_KN
+    }
     return GearCheck(
         gear=gear,
         model=model,
         twine_area=float(area),
         weights=weights_of(model),
-        drag={
-            knots: {name: band(area, knots) for name, band in BANDS.items()}
-            for knots in DRAG_SPEEDS_KN
-        },
-        findings=findings(gear),
+        drag=drag,
+        findings=(*findings(gear), *_drag_findings(model, drag)),
         derived=dict(_derived(raw, gear)),
     )
 
@@ -160,6 +163,21 @@ def drag_of_model(model: GearModel, knots: float) -> float:
     warp = max(500.0, model.gear.block_distance)
     tow = steady_tow(model, OperatingPoint(warp, warp, knots * KNOT))
     return drag_of_net(model, first_guess(model, tow, 0.0), tow)
+
+
+def _drag_findings(
+    model: GearModel, drag: Mapping[float, Mapping[str, float]]
+) -> Iterator[GearFinding]:
+    """Find a drag far from all formulas."""
+    knots = DRAG_SPEEDS_KN[1]
+    found, others = drag_of_model(model, knots), drag[knots].values()
+    if not DRAG_MARGINS[0] * min(others) <= found <= DRAG_MARGINS[1] * max(others):
+        yield GearFinding(
+            'netting',
+            f'found a drag of {1e-3 * found:.3g} kN at {knots:g} knots, expected the '
+            f'{1e-3 * min(others):.3g} to {1e-3 * max(others):.3g} kN of the formulas, or near '
+            'them; look at twine diameters, meshes and circumferences',
+        )
 
 
 def drag_of_net(model: GearModel, state: 'State', tow: 'Tow') -> float:

@@ -62,6 +62,11 @@ class SampleStream:
     def _read(self, path: Path) -> Iterator[Sample]:
         bag = Bag(path, namespace=self.namespace)
         names = {absolute(name, self.namespace): name for name in self.topics}
+        if names.keys().isdisjoint(bag.topics) and (others := _namespaces(bag, self.topics)):
+            raise BagError(
+                f'{path}: found no readings in /{self.namespace.strip("/")}, but in '
+                f'{" and ".join(others)}; expected --namespace {others[0].strip("/")}'
+            )
         refused: Counter[str] = Counter()
         reasons: dict[str, str] = {}
         watches = {name: SourceWatch() for name in self.topics}
@@ -89,3 +94,15 @@ class SampleStream:
             self.problems.append(
                 f'{path}: {count} messages were left out, the first because {reasons[name]}'
             )
+
+
+def _namespaces(bag: Bag, topics: Sequence[str]) -> list[str]:
+    """Return the namespaces in which a bag has some of these topics, without their last slash."""
+    ends = tuple(f'/{name}' for name in topics)
+    found = (
+        topic.removesuffix(end) or '/'
+        for topic in bag.topics
+        for end in ends
+        if topic.endswith(end)
+    )
+    return list(dict.fromkeys(found))

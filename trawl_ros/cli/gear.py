@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from trawl_ros.cli.options import FILE, FOLDER, SPEED, UNITS_OPTION, WARP
+from trawl_ros.cli.options import FILE, FOLDER, SPEED, UNITS_OPTION, WARP, Number
 from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.cli.tables import output_console, plain_table
 from trawl_ros.core.display_units import DisplayUnits
@@ -193,3 +193,56 @@ def doors() -> None:
             ' '.join(door.source.split()),
         )
     output_console().print(table)
+
+
+@command.command('copy')
+@click.argument('gear', metavar='GEAR')
+@click.argument('file', type=FILE)
+def copy(gear: str, file: Path) -> None:
+    """Copy GEAR, a file or the name of a gear of the package, to a new FILE of your own."""
+    from trawl_ros.gear.door_text import copy_gear
+
+    copy_gear(gear, file)
+    click.echo(f'{file}: a copy of {gear}')
+
+
+@command.command('set-door')
+@click.argument('file', type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.argument('door')
+@click.option('--warp', required=True, type=WARP, help='Warp length of a usual tow, m.')
+@click.option('--speed', required=True, type=SPEED, help='Its speed through the water, m/s.')
+@click.option('--area', type=Number(0.1, 100.0), help='Area of the new plate, m²; else it stays.')
+def set_door(file: Path, door: str, warp: float, speed: float, area: float | None) -> None:
+    """Put a door of the catalogue on the gear in FILE, and change FILE.
+
+    The command finds shackle points at which the boards have a usable steady state at --warp and
+    --speed, and prints what it changed. If it finds none, FILE stays as it is, and the command
+    says what was tried and which plate area would have the old lift. `trawl gear doors` lists the
+    doors. Mass and volume of the plate stay: write those of the new door into FILE.
+    """
+    from trawl_ros.cli.trim import points_lines, state_line
+    from trawl_ros.gear.door_text import with_door, write_door
+    from trawl_ros.gear.load import load_gear
+    from trawl_ros.gear.polars import load_door
+    from trawl_ros.solver.trimming.new_door import fit_door
+
+    old, published = load_gear(file), load_door(door)
+    with ProgressDisplay(error_console()) as display:
+        found = fit_door(
+            old, door, warp_length=warp, speed=speed, area_m2=area, on_progress=display
+        )
+    board, text = found.gear.board, file.read_text(encoding='utf-8')
+    write_door(file, with_door(text, board, found.trim.points, plate=area is not None))
+    if found.before is not None:
+        click.echo(f'before: {state_line(warp, speed, found.before)}')
+    click.echo(f'now: {state_line(warp, speed, found.trim.steady)}')
+    click.echo(f'{file}: changed; its board now has the law of {published.name} and these points:')
+    click.echo('\n'.join(points_lines(found.trim.points)))
+    click.echo(
+        'Coefficients and `identification` of the old board are gone: corrections of the law begin '
+        f'at zero. The plate has {board.area_m2:.4g} m², '
+        f'{board.span_m:.3g} by {board.chord_m:.3g} m, and {board.mass_kg:g} kg. Its aspect ratio '
+        f'is {board.span_m**2 / board.area_m2:.2g}'
+        + (f'; that of the door is {published.aspect_ratio:g}' if published.aspect_ratio else '')
+        + '.'
+    )

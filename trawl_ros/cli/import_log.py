@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from trawl_ros.bags.logs.draft import draft_mapping
 from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.cli.options import NEW_BAG
 
@@ -12,23 +13,32 @@ from trawl_ros.cli.options import NEW_BAG
 @click.argument('log', type=click.Path(path_type=Path))
 @click.option(
     '--mapping',
-    required=True,
     type=click.Path(path_type=Path),
-    help='YAML file that assigns columns or sentences to topics, or a name: door_test_haul_log, '
-    'nmea, tv80.',
+    help='YAML file that assigns columns or sentences to topics, or a name: notus, esonar, '
+    'netmind, scanmar_scd, tv80, nmea, door_test_haul_log.',
 )
-@click.option('--out', required=True, type=NEW_BAG, help='New folder for the bag.')
+@click.option('--out', type=NEW_BAG, help='New folder for the bag.')
+@click.option(
+    '--draft', is_flag=True, help='Print a mapping of the columns that are recognised; no bag.'
+)
 @click.option(
     '--leave-out',
     is_flag=True,
     help='Leave out and count rows that cannot be read; otherwise the first one is an error.',
 )
-def command(log: Path, mapping: Path, out: Path, leave_out: bool) -> None:
+def command(
+    log: Path, mapping: Path | None, out: Path | None, draft: bool, leave_out: bool
+) -> None:
     """Convert a log from sea to a bag.
 
     LOG is a table, such as CSV, or a file of NMEA 0183 sentences. The mapping determines the kind
     and assigns columns or sentences to topics.
     """
+    if draft:
+        click.echo(draft_mapping(log), nl=False)
+        return
+    if mapping is None or out is None:
+        raise click.UsageError('expected --mapping and --out, or --draft')
     done = import_log(log, mapping, out, leave_out=leave_out)
     rows = 'lines' if done.of_sentences else 'rows'
     click.echo(f'{out}: {sum(done.counts.values())} messages from {done.rows} {rows}')

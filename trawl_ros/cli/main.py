@@ -39,6 +39,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'scenarios': ('cli.scenarios', 'List the scenarios of the package.'),
         'files': ('cli.files', 'Print or copy the files of the package: gears, scenarios, bag.'),
         'import-log': ('cli.import_log', 'Convert a log from sea, a table or NMEA 0183, to a bag.'),
+        'swept': ('cli.swept', 'Compute swept area and volume of hauls, with intervals.'),
         'bag': ('cli.bag', 'Inspect, check, repair and export bags.'),
         'policy': ('cli.policy', 'Write the access rights of all nodes for SROS 2.'),
         'view': ('cli.view', 'Show the tow of bags in Rerun, in space and over time.'),

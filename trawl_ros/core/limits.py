@@ -71,6 +71,7 @@ METADATA_BYTES = Limit(4_000_000, 'bytes', 'metadata.yaml of a bag')
 METADATA_VALUES = Limit(500_000, 'values', 'metadata.yaml, aliases written out')
 METADATA_DEPTH = Limit(20, 'levels', 'nesting of metadata.yaml')
 LOG_READINGS = Limit(2_000_000, 'readings', 'a log that is imported, held for sorting')
+PROBE_BYTES = Limit(50_000_000, 'bytes', 'a file of Notus, eSonar, NetMind or Scanmar')
 LOG_NULS = Limit(100_000_000, 'bytes', 'NULs in a row in a log, as after a loss of power')
 LATEST_STAMP = Limit(2**63 - 1, 'ns', 'log time of a message, since 1970')
 

@@ -135,7 +135,9 @@ def validated(
     try:
         return cls.model_validate(data)
     except ValidationError as reason:
-        lines = validation_messages(cls, data, reason.errors(include_url=False), prefix)
+        found = validation_messages(cls, data, reason.errors(include_url=False), prefix)
+        # A check of a whole record can find several faults, one on each line.
+        lines = [line for message in found for line in message.splitlines()]
         more = len(lines) - MAX_COMPLAINTS
         # A line may contain a whole value of the file.
         messages = [f'{path}: {one_line(line, DIAGNOSIS.value)}' for line in lines[:MAX_COMPLAINTS]]

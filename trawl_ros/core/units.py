@@ -29,6 +29,7 @@ UNITS: Mapping[str, Unit] = MappingProxyType(
         'MN': Unit('force', 1e6, 'meganewtons'),
         'kgf': Unit('force', 9.80665, 'kilograms-force'),
         'tf': Unit('force', 9806.65, 'tonnes-force'),
+        't': Unit('force', 9806.65, 'tonnes'),
         'lbf': Unit('force', 4.4482216152605, 'pounds-force'),
         'short_tf': Unit('force', 8896.443230521, 'short tons-force'),
         'long_tf': Unit('force', 9964.01641818352, 'long tons-force'),

@@ -221,6 +221,19 @@ class BoardRecord(Record):
             given.setdefault('rotary_slope', 2.5)
         return given
 
+    @model_validator(mode='after')
+    def _corrections(self) -> 'BoardRecord':
+        if self.law is None:
+            return self
+        for name, low, high in zip(COEFFICIENTS, CORRECTIONS.low, CORRECTIONS.high, strict=True):
+            if not low <= (value := getattr(self.coefficients, name)) <= high:
+                raise ValueError(
+                    f'coefficients.{name}: found {value:g} beside a law, to which the coefficients '
+                    f'are corrections, expected {low:g} to {high:g}. Delete `coefficients` if they '
+                    'describe another board, or delete `law`'
+                )
+        return self
+
 
 def _refuse_keys_of_0_1(given: dict[str, object]) -> None:
     found = [key for key in ('force_axes', 'moment_signs', 'slip_sign') if key in given]

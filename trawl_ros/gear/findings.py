@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
 
-from trawl_ros.gear.boards import plate_inertia
+import numpy as np
+
+from trawl_ros.gear.boards import CORRECTIONS, plate_inertia
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord, cut_slope
 from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.records import GearRecord
@@ -17,8 +19,17 @@ JOIN_TOLERANCE = 0.15
 CUT_TOLERANCE = 0.15
 """Greatest difference of a piece's counts from its cutting rate, as a part of the lost meshes."""
 
+WIRE_WEIGHT_TOLERANCE = 0.35
+"""Greatest relative difference of a warp's weight from that of steel wire of its diameter."""
+
+FRAME_ROPE_RATIO = (0.6, 1.6)
+"""Range of the headrope's length over the footrope's."""
+
 LONGEST_BRIDLE_M = 1000.0
 """Greatest length of a bridle; with sweeps they are some hundred metres long."""
+
+STEEL_WEIGHT_N_M3 = 3.1e4
+"""Weight in water per length of steel wire rope over its squared diameter."""
 
 STEEL_EA_PA = 4.0e10
 """EA of steel wire rope over its squared diameter."""
@@ -52,6 +63,21 @@ def findings(gear: GearRecord) -> tuple[GearFinding, ...]:
 
 
 def _ropes(gear: GearRecord) -> Iterator[GearFinding]:
+    wire = STEEL_WEIGHT_N_M3 * gear.warp.diameter_m**2
+    warp = gear.warp.weight_in_water_n_m
+    if 0.5 * wire <= warp and not abs(warp / wire - 1.0) <= WIRE_WEIGHT_TOLERANCE:
+        yield GearFinding(
+            'warp.weight_in_water_n_m',
+            f'found {warp:g} N/m, expected about {wire:.3g} N/m for steel wire of '
+            f'{1e3 * gear.warp.diameter_m:.3g} mm; or another diameter_m',
+        )
+    head, foot = gear.headrope.length_m, gear.footrope.length_m
+    if head and foot and not FRAME_ROPE_RATIO[0] <= head / foot <= FRAME_ROPE_RATIO[1]:
+        yield GearFinding(
+            'headrope.length_m',
+            f'found {head:g} m and a footrope of {foot:g} m, expected {FRAME_ROPE_RATIO[0]:g} to '
+            f'{FRAME_ROPE_RATIO[1]:g} times the footrope',
+        )
     for key in ('warp', 'bridle'):
         rope = getattr(gear, key)
         steel = STEEL_EA_PA * rope.diameter_m**2
@@ -82,7 +108,7 @@ def _ropes(gear: GearRecord) -> Iterator[GearFinding]:
 
 def _light_wire(key: str, rope: RopeRecord) -> Iterator[GearFinding]:
     """Find a rope with the stiffness of a wire that is much lighter."""
-    usual = 3.1e4 * rope.diameter_m**2
+    usual = STEEL_WEIGHT_N_M3 * rope.diameter_m**2
     found = rope.weight_in_water_n_m
     if found < 0.5 * usual:
         in_kilograms = 0.5 < 9.81 * found / usual < 2.0
@@ -247,6 +273,8 @@ def _board(gear: GearRecord) -> Iterator[GearFinding]:
     if gear.pair is not None:
         return
     board = gear.board
+    if board.law is not None:
+        yield from _corrections(gear)
     plate = board.span_m * board.chord_m
     if not 0.7 <= board.area_m2 / plate <= 1.15:
         yield GearFinding(
@@ -285,3 +313,19 @@ def _board(gear: GearRecord) -> Iterator[GearFinding]:
         yield GearFinding(
             'board.fastening.warp_m', 'found it behind a bridle, expected it ahead of both'
         )
+
+
+def _corrections(gear: GearRecord) -> Iterator[GearFinding]:
+    """Find coefficients and a prior that look like those of a board without a law."""
+    usual = np.array(CORRECTIONS.std)
+    for key, values in (
+        ('board.coefficients', gear.board.coefficients.array()),
+        ('identification.start', np.array(gear.identification.start)),
+    ):
+        if np.any(np.abs(values) > 2.0 * usual):
+            yield GearFinding(
+                key,
+                'found numbers as of a board without a law, expected corrections near zero beside '
+                f'board.law; delete {key.removesuffix(".start")} if they '
+                'describe another board',
+            )

@@ -46,7 +46,7 @@ def observe(model: GearModel, state: State, tow: Tow) -> Observables:
 
 
 def observed_values(model: GearModel, states: State, tows: Tow) -> FloatArray:
-    """Return observables (m, 22), complex, of m states that have the `observed_nodes` only."""
+    """Return observables (m, 24), complex, of m states that have the `observed_nodes` only."""
     top, segments = model.layout.top_warp_bars, float(model.warp_segments)
     given = as_kind(
         complex,
@@ -115,7 +115,7 @@ def fill_observables(
     water: WaterTable,
     values: FloatArray,
 ) -> None:
-    """Fill in the observables (m, 22) in the order of `OBSERVABLES`.
+    """Fill in the observables (m, 24) in the order of `OBSERVABLES`.
 
     Parameters
     ----------
@@ -173,6 +173,10 @@ def fill_observables(
         fill_flow(middles, outward, rotations[case], relative, rates[case], flow, attack, slip)
         for side in range(2):
             seen[16 + side], seen[18 + side] = attack[side], slip[side]
+            for i in range(3):
+                middle = 0.5 * (blocks[case, 0, i] + blocks[case, 1, i])
+                between[i] = boards[case, side, i] - middle
+            seen[22 + side] = _length(between)
 
 
 def outward_normal_lift(state: State) -> FloatArray:

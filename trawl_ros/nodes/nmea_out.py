@@ -16,6 +16,7 @@ from trawl_ros.nodes.runtime.qos import CONSUMER
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.records.fields import WaterColumn
 from trawl_ros.sentences.framing import HEADER, tag_block
+from trawl_ros.sentences.plotter import TOPICS, PlotterWriter
 from trawl_ros.sentences.table import load_table, load_tables
 from trawl_ros.sentences.writer import SentenceWriter
 
@@ -40,6 +41,10 @@ class NmeaOut(TrawlNode):
              '0183 version 4.'),
         Flag('iec_61162_450', False, 'Put UdPbC in front of each datagram, as IEC 61162-450 has '
              'it.'),
+        Flag('plotter', False, 'Send the positions of doors and net to a chart plotter (TTM, TPR, '
+             'TPT), with each reading of the winches.'),
+        Number('net_behind_m', 100.0, 'm', 0.0, 2000.0, 'Length of bridles and sweeps between '
+               'doors and headrope, for these positions.'),
         Number('water_density_kg_m3', 1025.0, 'kg/m3', 900.1, 1099.9, 'By which pressures become '
                'depths.'),
     )  # fmt: skip
@@ -50,6 +55,9 @@ class NmeaOut(TrawlNode):
         tables = load_tables(self.parameters['systems'])
         every_reading = self.parameters['every_reading']
         self._writer = SentenceWriter(tables, water, every_reading=every_reading)
+        self._plotter: PlotterWriter | None = None
+        if self.parameters['plotter']:
+            self._plotter = PlotterWriter(water, self.parameters['net_behind_m'])
         self._ship_clock = SentenceWriter([load_table(CLOCK)], water)
         self._next_clock: int | None = None
         self._interval = round(self.parameters['clock_interval_s'] * SECOND)
@@ -61,7 +69,7 @@ class NmeaOut(TrawlNode):
             raise SentenceError('parameter links: found none, expected where sentences go')
         self._sinks = [SentenceSink(address) for address in addresses]
         self._progress = ConsumerProgress(self, idle=lambda: True)
-        for topic in topics:
+        for topic in dict.fromkeys((*topics, *(TOPICS if self._plotter else ()))):
             self._listen_to(topic)
 
     def statuses(self) -> list[Status]:
@@ -87,6 +95,8 @@ class NmeaOut(TrawlNode):
         def take(message: Any) -> None:
             sample = to_sample(topic, message)
             texts = self._writer.write(sample)
+            if self._plotter is not None:
+                texts += self._plotter.write(sample)
             if texts:
                 texts = [*self._time(sample.stamp), *texts]
             for text in texts:

@@ -89,7 +89,11 @@ class StatedTopic(Record):
         in_metres = self.std is not None and UNITS[self.std.unit].quantity == 'length'
         if water and in_metres and STD_QUANTITIES.get(topic) == 'pressure':
             std = water.depth_to_difference(std)
-        return Stated(std, in_si(self.min_range), in_si(self.max_range))
+        high = in_si(self.max_range)
+        if self.max_range is None and topic in RANGE_TOPICS:
+            # Without a stated limit all readings are used that any instrument can report.
+            high = SENSORS[topic].fields[0].high
+        return Stated(std, in_si(self.min_range), high)
 
     def check(self, topic: str, *, has_water: bool = True) -> None:
         """Reject settings that do not suit a topic; with water, pressure noise may be in metres.
@@ -102,8 +106,6 @@ class StatedTopic(Record):
         where = f'topics.{topic}'
         self._check_std(where, STD_QUANTITIES.get(topic), has_water)
         for name, limit in (('min_range', self.min_range), ('max_range', self.max_range)):
-            if limit is None and topic in RANGE_TOPICS and name == 'max_range':
-                raise ValueError(f'{where}.{name}: missing, expected a length')
             if limit is not None and topic not in RANGE_TOPICS:
                 raise ValueError(f'{where}.{name}: given, expected none: it measures no distance')
             if limit is not None:

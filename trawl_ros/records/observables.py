@@ -15,6 +15,7 @@ class Observables:
     Tension, ``divergence`` (outward positive, against the ship's course) and ``declination``
     (down positive) belong to the warp at its block. ``pitch`` is nose down and ``roll`` top to
     starboard positive in the door frame; ``attack``, ``slip``, ``inclination`` are α, β, δ.
+    ``slant_range`` is the distance of a door from the middle between the towing blocks, m.
 
     Examples
     --------
@@ -22,7 +23,7 @@ class Observables:
     >>> model = trawl_ros.build_model(trawl_ros.load_gear('kaifuha').refined(net=0.25))
     >>> seen = trawl_ros.steady_state(model, 500.0, 2.1).observables
     >>> round(seen.warp_tension / 1000), seen.array().shape
-    (147, (22,))
+    (147, (24,))
     """
 
     door_spread: float
@@ -47,6 +48,8 @@ class Observables:
     starboard_slip: float
     port_inclination: float
     starboard_inclination: float
+    port_slant_range: float
+    starboard_slant_range: float
 
     def array(self) -> NDArray[np.float64]:
         """All observables (n_observables,) in the order of `OBSERVABLES`."""

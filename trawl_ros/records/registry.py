@@ -118,6 +118,8 @@ class Channel:
         that is further from the median is that of a false echo, which says nothing of the
         sensor's noise: it is left out before outliers of the noise are looked for. Infinite
         where false echoes do not occur.
+    usual
+        False for a sensor that few ships have; plans of trials do not count on it.
     """
 
     name: str
@@ -135,6 +137,7 @@ class Channel:
     settles: bool = False
     per_state: float = 0.0
     leap: float = math.inf
+    usual: bool = True
 
     @property
     def longest_gap(self) -> float:

@@ -5,7 +5,7 @@ channels, limits, rights and tables all come from `INSTRUMENTS`.
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -91,7 +91,8 @@ class RangeSample:
     """Range sample, m.
 
     ``what`` is 'spread', 'opening_height', 'opening_width', 'bottom' (from the headrope to the
-    seabed), 'depth' (from the keel to the seabed) or 'school' (from the keel to fish).
+    seabed), 'depth' (from the keel to the seabed), 'school' (from the keel to fish), 'port_slant'
+    or 'starboard_slant' (from the ship to the door).
     """
 
     stamp: int
@@ -227,6 +228,7 @@ RANGES = {
     'bottom': 'sonar/bottom',
     'depth': 'vessel/echo_sounder/depth',
     'school': 'vessel/echo_sounder/school',
+    **{f'{side}_slant': f'door/{side}/slant_range' for side in SIDES},
 }
 """Topic of each distance, by `RangeSample.what`."""
 
@@ -355,6 +357,21 @@ def _range(
     )  # fmt: skip
 
 
+def _slant_range(side: str) -> Sensor[RangeSample]:
+    what = f'{side}_slant'
+    channel = Channel(
+        f'{what}_range', RANGES[what], 'm', 1.0, 6000.0, 1.0, 2.0, 0.005, 0.031, 36.0,
+        required=False, lively=True, leap=50.0, usual=False,
+    )  # fmt: skip
+    row = _range(
+        what, VESSEL, 1.0, f'Acoustic distance from the ship to the {side} door, m.',
+        ('door_sensor_node', 'nmea_in'), _READERS, 0.35,
+        silence=ACOUSTIC_SILENCE_S, channel=channel, on_course=True,
+    )  # fmt: skip
+    blank = replace(row.blank, max_range=_MAX_DEPTH_M)
+    return replace(row, blank=blank, errors='slant_range')
+
+
 def _velocity(
     over: str, frame: str, sentence: str, named: tuple[tuple[str, str, Channel | None, str], ...],
     heard_by: tuple[str, ...], rate_of_turn: Channel | None = None,
@@ -445,6 +462,7 @@ INSTRUMENTS: tuple[Sensor[Sample], ...] = (
         ('trawl_sonar_node',), ('view_node',), blank=SonarPointsSample(0, np.zeros((0, 4))),
     ),
     *(_warp_angles(side) for side in SIDES),
+    *(_slant_range(side) for side in SIDES),
     _range(
         'bottom', SONAR, 1.0, "From the headrope's centre down to the seabed, m.",
         ('trawl_sonar_node', 'nmea_in'), ('nmea_out', 'view_node', 'trial_node'), 0.26,

@@ -22,7 +22,12 @@ from trawl_ros.solver.cold_start import cold_start
 from trawl_ros.solver.first_guess import at_velocity, shifted_to
 from trawl_ros.solver.last_state import followed
 from trawl_ros.solver.linear.search_budget import budgeted
-from trawl_ros.solver.operating_point import OperatingPoint, remedy_command, steady_tow
+from trawl_ros.solver.operating_point import (
+    OperatingPoint,
+    remedy_command,
+    steady_tow,
+    trim_command,
+)
 from trawl_ros.solver.relax import (
     DRIFT_ITERATIONS,
     DRIFT_TIME_STEP_S,
@@ -318,14 +323,14 @@ def require_usable(model: GearModel, found: Equilibrium) -> SteadyState:
             f'{where}: the gear breaks the surface by {found.highest:.1f} m', 'surfaced'
         )
     if found.outside_law:
-        seen, limits = found.observables, model.board.law_range
-        both, middle = (seen.port_attack, seen.starboard_attack), float(np.mean(limits))
-        attack = max(both, key=lambda angle: abs(angle - middle))
-        limit = min(limits, key=lambda edge: abs(edge - attack))
+        seen, (low, high) = found.observables, np.degrees(model.board.law_range)
+        both = np.degrees([seen.port_attack, seen.starboard_attack])
+        attack = max(both, key=lambda angle: abs(angle - 0.5 * (low + high)))
         raise NoSteadyState(
-            f'{where}: a board works at {np.degrees(attack):.1f}° of attack, outside the '
-            f'range of its law ({np.degrees(limit):.0f}°)',
+            f'{where}: a board works at {attack:.1f}° of attack, outside the range of its law '
+            f'({low:.0f} to {high:.0f}°)',
             'outside law',
+            trim_command(model.gear, found.point, low + (high - low) / 3),
         )
     motion = stability(model, found.state, found.tow)
     if not motion.stable:

@@ -47,12 +47,22 @@ def remedy_command(gear: GearRecord, point: OperatingPoint) -> str:
 
     A gear of the package is named. For another gear the record does not know its file.
     """
+    name, file, place = _named(gear, point)
+    return f'`trawl gear state {name} {place}`{file} computes what would make it usable'
+
+
+def trim_command(gear: GearRecord, point: OperatingPoint, attack_deg: float) -> str:
+    """Return the sentence that names the command for shackle points at an attack angle (deg)."""
+    name, file, place = _named(gear, point)
+    command = f'trawl trim {name} --attack {attack_deg:.0f} --inclination 12 {place}'
+    return f'`{command}`{file} finds shackle points at which the boards work in this range'
+
+
+def _named(gear: GearRecord, point: OperatingPoint) -> tuple[str, str, str]:
+    """Return the name of a gear, what it stands for, and the options of the operating point."""
     warp = 0.5 * (point.port_length + point.starboard_length)
-    name, file = gear.name, ''
-    if not _packaged(name):
-        name, file = 'GEAR', ' (GEAR is your gear file)'
-    command = f'trawl gear state {name} --warp {warp:g} --speed {point.speed:g}'
-    return f'`{command}`{file} computes what would make it usable'
+    named = (gear.name, '') if _packaged(gear.name) else ('GEAR', ' (GEAR is your gear file)')
+    return *named, f'--warp {warp:g} --speed {point.speed:g}'
 
 
 def _packaged(name: str) -> bool:

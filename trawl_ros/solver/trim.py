@@ -135,6 +135,13 @@ def trim(
     22.0
     """
     model.gear.require_boards('whose fastening points could be found')
+    low, high = model.board.law_range
+    if not low <= attack <= high:
+        raise NoSteadyState(
+            f'found a wanted attack angle of {np.degrees(attack):.1f}°, expected one in the range '
+            f"of the boards' law, {np.degrees(low):.0f} to {np.degrees(high):.0f}°",
+            'outside law',
+        )
     acting, point = with_effects(model, (warp_length, warp_length), speed)
     tow = steady_tow(acting, point)
     state = first_guess(acting, tow, point.heading)
@@ -191,7 +198,7 @@ class _Search:
         if left > OPTIONS.shape_force_n:
             raise NoSteadyState(
                 'the gear has no shape with the boards held at the wanted angles, '
-                f'{left:.3g} N left'
+                f'{left:.3g} N left; try other angles in the range of their law'
             )
         moving = np.flatnonzero(free)
         moments = np.arange(3 * model.nodes + 3, 3 * model.nodes + 6)

@@ -237,7 +237,6 @@ def test_a_log_without_any_reading_is_refused(run):
         ('port_length:', 'length:', r'fields\.length: .*port_length'),
         ('water: {density_kg_m3: 1025.0}', '', 'water: missing, expected density_kg_m3'),
         ('      roll: {column: Roll, unit: deg}\n', '', 'attitude.*pitch and roll'),
-        ('    max_range: {value: 400, unit: m}\n', '', 'max_range: missing'),
         ('value: 400', 'value: 4', 'max_range: found 4 m.*min_range'),
         ('std: {value: 5, unit: m}', 'std: {value: -5, unit: m}', 'std.value: found -5'),
         ('std: {value: 1, unit: deg}', 'std: {value: 1, unit: m}', "std.unit: found 'm'"),

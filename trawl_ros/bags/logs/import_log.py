@@ -24,6 +24,7 @@ from trawl_ros.bags.logs.layout import (
     read_rows,
 )
 from trawl_ros.bags.logs.mapping import ColumnMapping, LogMapping, TopicMapping, load_mapping
+from trawl_ros.bags.logs.probe_files import read_probe_rows
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError, LogError
 from trawl_ros.core.files import new_folder, written_folder
@@ -139,7 +140,7 @@ class _TableReader:
     def samples(self) -> Iterable[Sample]:
         keys = [column for clock in self._mapping.clocks() for column in clock.columns]
         keys += self._mapping.only
-        for row in read_rows(self._path, self._mapping.layout, self._mapping.needed(), keys):
+        for row in self._rows_of(keys):
             self.rows += 1
             try:
                 if isinstance(row, BadRow):
@@ -149,6 +150,21 @@ class _TableReader:
                 if not self._leave_out:
                     raise
                 self.left[bad.reason] += 1
+
+    def _rows_of(self, keys: list[str]) -> Iterable[LogRow | BadRow]:
+        layout, needed = self._mapping.layout, self._mapping.needed()
+        if layout.format == 'table':
+            return read_rows(self._path, layout, needed, keys)
+        rows, notes = read_probe_rows(self._path, layout.format)
+        self.notes += notes
+        for row in (one for one in rows if isinstance(one, LogRow)):
+            if absent := [name for name in needed if name not in row.cells]:
+                raise LogError(
+                    f'{self._path}: no column {absent[0]!r} (wanted by {needed[absent[0]]}); '
+                    f'columns are {", ".join(row.cells)}'
+                )
+            break
+        return rows
 
     def _look_for_absent(self, row: LogRow) -> set[str]:
         """Find the optional topics for which the log lacks a column."""

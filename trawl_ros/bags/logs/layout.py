@@ -24,6 +24,9 @@ MAX_LINE = 1_000_000
 OF_THE_ROW = ('clock', 'only')
 """Keys whose columns are ordinary columns in a long table too."""
 
+ProbeFormat = Literal['notus', 'esonar', 'netmind', 'scanmar_scd']
+"""Formats of receivers of net sensors that are no plain tables."""
+
 BLANKS = 'blanks'
 _NAMED = {'tab': '\t'}
 _DEGREES = re.compile(r'[°º˚d\'′’"″m\s:]+')
@@ -40,12 +43,15 @@ class Long(Record):
 class LogLayout(Record):
     """Layout of a log file.
 
-    ``separator`` is one character, ``tab``, or ``blanks`` for any number of blanks. ``skip_lines``
-    are above the line of column names, ``skip_after_names`` (such as a line of units) below it.
+    ``format`` is that of a receiver of net sensors, to which the other keys do not apply, or a
+    plain table. ``separator`` is one character, ``tab``, or ``blanks`` for any number of blanks.
+    ``skip_lines`` are above the line of column names, ``skip_after_names`` (such as a line of
+    units) below it.
     ``names`` are the column names of a file without such a line. If several columns have one name,
     the log is refused, or the ``first`` is used. Lines that begin with ``comment`` are ignored.
     """
 
+    format: ProbeFormat | Literal['table'] = 'table'
     encoding: str = 'utf-8'
     separator: str = ','
     decimal: Literal['.', ','] = '.'

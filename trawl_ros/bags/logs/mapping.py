@@ -1,5 +1,6 @@
 """Mapping files of logs: column and unit of each reading, or sentences of each topic."""
 
+from collections.abc import Iterator
 from datetime import date
 from pathlib import Path
 from typing import Annotated, Literal
@@ -96,36 +97,41 @@ class LogMapping(Record):
 
     @model_validator(mode='after')
     def _fits_the_topics(self) -> 'LogMapping':
+        faults: list[str] = []
         for topic, mapping in self.topics.items():
-            where = f'topics.{topic}'
-            if topic not in FIELDS:
-                raise ValueError(f'{where}: unknown topic, expected one of {", ".join(FIELDS)}')
-            self._check_fields(where, mapping.fields, FIELDS[topic])
-            mapping.check(topic, has_water=self.water is not None)
+            faults += self._faults(topic, mapping)
+        if faults:
+            raise ValueError('\n'.join(faults))
         return self
 
-    def _check_fields(
-        self, where: str, fields: dict[str, ColumnMapping], known: dict[str, str]
-    ) -> None:
+    def _faults(self, topic: str, mapping: TopicMapping) -> Iterator[str]:
+        """Yield all faults of a topic, each a sentence."""
+        where, fields, known = f'topics.{topic}', mapping.fields, FIELDS.get(topic)
+        if known is None:
+            yield f'{where}: unknown topic, expected one of {", ".join(FIELDS)}'
+            return
         for field, column in fields.items():
             if field not in known:
-                raise ValueError(
-                    f'{where}.fields.{field}: unknown field, expected one of {", ".join(known)}'
-                )
-            check_unit(f'{where}.fields.{field}.unit', column.unit, known[field])
+                yield f'{where}.fields.{field}: unknown field, expected one of {", ".join(known)}'
+                continue
+            try:
+                check_unit(f'{where}.fields.{field}.unit', column.unit, known[field])
+            except ValueError as fault:
+                yield str(fault)
             if column.hemisphere and field not in ('latitude', 'longitude'):
-                raise ValueError(
-                    f'{where}.fields.{field}.hemisphere: given, expected none: it is no position'
-                )
-        if known is FIELDS['vessel/velocity_water'] and 'forward' not in fields:
-            raise ValueError(f'{where}.fields: to_port alone, expected forward beside it')
+                yield f'{where}.fields.{field}.hemisphere: given, expected none: it is no position'
+        if topic == 'vessel/velocity_water' and 'forward' not in fields:
+            yield f'{where}.fields: to_port alone, expected forward beside it'
         if 'depth' in fields and 'pressure' in fields:
-            raise ValueError(f'{where}.fields: both depth and pressure, expected one of them')
+            yield f'{where}.fields: both depth and pressure, expected one of them'
         if 'depth' in fields and self.water is None:
-            raise ValueError(f'water: missing, expected density_kg_m3 for the depth of {where}')
-        paired = where.removeprefix('topics.') in _TOGETHER
-        if paired and len(fields) < len(known):
-            raise ValueError(f'{where}.fields: {", ".join(fields)}, expected {" and ".join(known)}')
+            yield f'water: missing, expected density_kg_m3 for the depth of {where}'
+        if topic in _TOGETHER and len(fields) < len(known):
+            yield f'{where}.fields: {", ".join(fields)}, expected {" and ".join(known)}'
+        try:
+            mapping.check(topic, has_water=self.water is not None)
+        except ValueError as fault:
+            yield str(fault)
 
 
 class RecorderClock(Clock):

@@ -15,13 +15,13 @@ from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.records.channels import INPUTS, MEASURED
+from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium, require_usable
 from trawl_ros.solver.predict import Predictor
 
-PLANNED = tuple(name for name in MEASURED if name in OBSERVABLES)
-"""Channels that a planned window is imagined to have: all that the model predicts."""
+PLANNED = tuple(name for name in MEASURED if name in OBSERVABLES and CHANNELS[name].usual)
+"""Channels that a planned window is imagined to have: all usual ones that the model predicts."""
 
 DEPTHS = tuple(name for name in PLANNED if name.endswith('depth'))
 """Of these, those that come to rest last."""

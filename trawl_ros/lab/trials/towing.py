@@ -38,7 +38,7 @@ class Course:
         Since it began, s.
     inputs : (n, 3) array
         Both warp lengths (m) and speed (m/s) as counters and log would show them.
-    values : (n, 22) array
+    values : (n, 24) array
         Observables as sensors would show them.
     heading
         ENU yaw, rad.
@@ -53,7 +53,7 @@ class Course:
     moments: tuple[float, ...]
 
     def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Inputs (m, 3) and values (m, 22) at other times (m,)."""
+        """Inputs (m, 3) and values (m, 24) at other times (m,)."""
         inputs, values = (
             np.column_stack([np.interp(times, self.times, column) for column in table.T])
             for table in (self.inputs, self.values)

@@ -10,6 +10,7 @@ from hypothesis.strategies import DrawFn
 from hostile.mutations import mutated
 from hostile.target import Files, Target
 from trawl_ros.bags.logs.clock import WORDS
+from trawl_ros.bags.logs.draft import draft_mapping
 from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.core.errors import TrawlError
 
@@ -173,6 +174,28 @@ def read_sentences(given: Path, results: Path) -> None:
     import_log(given / 'log.nmea', given / 'mapping.yaml', results / 'bag', leave_out=True)
 
 
+PROBES = (
+    b'[NOTUS TEXTFILE V3.1]\nTow Date: 11-Jul-2019 7:51:17\nPlacement: Starboard\n'
+    b'Code,Time,Range(m),Data(m),Comment\nC24S,07:53:27,54.6,35.2,\nC24S,23:53:27,---,---,\n',
+    b'CPU Date and Time,GPS Date,GPS Time,Latitude,Longitude,Speed,Heading,Validity,'
+    b'Transducer Name,Sensor Name,Sensor Value,Error Code,Hydrophone,Signal Strength\n'
+    b'Fri Aug 16 16:24:22 2013,16-Aug-2013,192424,47 58.5 N,064 57.9 W,2.1,86.2,A,DoorSpread,'
+    b'DoorMaster,10.0,D,S,5.0\n',
+    b'FileName: X\n Date Time Latitude Longitude Speed Primary DoorSpread\n'
+    b'100811  205148  48   4.9282 N  63  41.4732 W   2.1        2.2        6.3*\n',
+    b'"Filename: x.SCD"\n"DI1"\n"1997-07-14""11:41:29""N047:54.860""W063:35.500"    0.0   0.00     '
+    b'3.8   0.6"."     0.6  10.0  6"."    40.1   0.0"."       0"?"     0.0   0.0"?"" 0"\n',
+)
+"""Files of receivers of net sensors."""
+
+
+def read_probe(given: Path, results: Path) -> None:
+    """Draft a mapping of a file of a receiver, and import the file by it."""
+    results.mkdir()
+    (results / 'mapping.yaml').write_text(draft_mapping(given / 'log.txt'))
+    import_log(given / 'log.txt', results / 'mapping.yaml', results / 'bag', leave_out=True)
+
+
 def _table(clock: str, encoding: str, skip: int) -> Files:
     mapping = MAPPING.format(
         format=clock,
@@ -192,6 +215,15 @@ def _sentence(said: str) -> Files:
 
 
 TARGETS = (
+    Target(
+        name='probe-log',
+        inputs=mutated(st.sampled_from(PROBES), tuple(cell.encode() for cell in CELLS)).map(
+            lambda content: {'log.txt': content}
+        ),
+        read=read_probe,
+        examples=150,
+        known={'header-alone': lambda: {'log.txt': PROBES[2].split(b'1008')[0]}},
+    ),
     Target(
         name='csv-log',
         inputs=tables(),

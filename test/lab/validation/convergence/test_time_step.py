@@ -45,7 +45,7 @@ def test_the_smooth_manoeuvre_moves_as_its_rates_say(model: GearModel) -> None:
 @pytest.mark.parametrize('order', [1.0, 2.0, 3.0])
 def test_the_order_is_that_of_the_errors(order: float) -> None:
     rng = np.random.default_rng(1)
-    exact, shape = rng.normal(size=(5, 22)), rng.normal(size=(5, 22))
+    exact, shape = rng.normal(size=(5, 24)), rng.normal(size=(5, 24))
     runs = [
         SteppedManoeuvre(
             step, exact + shape * step**order, (exact + shape * step**order)[:, None, :3], tension
