@@ -24,7 +24,7 @@ from trawl_ros.records.frames import (
 )
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.records.registry import Sensor, Topic
-from trawl_ros.records.rights import EVERY_NODE, RIGHTS
+from trawl_ros.records.rights import EVERY_NODE, NODE_RIGHTS
 from trawl_ros.records.topics import (
     CLOCK,
     COMMANDS,
@@ -39,7 +39,7 @@ from trawl_ros.records.topics import (
 )
 
 DOCUMENT = Path(__file__).parents[2] / 'docs' / 'interface.md'
-NODES = tuple(RIGHTS)
+NODES = tuple(NODE_RIGHTS)
 WITH_DATUM = ('vessel_node', 'autopilot_node', 'nmea_in')
 
 CONVENTIONS = {
@@ -241,14 +241,14 @@ def joints_table() -> str:
 def services_table() -> str:
     rows = (
         (f'`{service}`', f'`{node}`', 'std_srvs/Trigger', SERVICE_SENTENCES[service])
-        for node, rights in RIGHTS.items()
+        for node, rights in NODE_RIGHTS.items()
         for service in rights.answers
     )
     return table(('service', 'node', 'type', 'what it does'), rows)
 
 
 def node_section(node: str) -> str:
-    rights = RIGHTS[node]
+    rights = NODE_RIGHTS[node]
     ways = {
         'Publishes': rights.publishes, 'Listens to': rights.hears, 'Services': rights.answers,
     }  # fmt: skip

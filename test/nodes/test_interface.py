@@ -8,7 +8,7 @@ from interface.page import CONVENTIONS, DOCUMENT, NODES, SECTIONS, node_class, p
 
 from trawl_ros.nodes.runtime.parameters import OWN_TO_ROS
 from trawl_ros.nodes.runtime.qos import offered
-from trawl_ros.records.rights import EVERY_NODE, RIGHTS
+from trawl_ros.records.rights import EVERY_NODE, NODE_RIGHTS
 from trawl_ros.records.topics import TOPICS, absolute
 
 pytestmark = pytest.mark.ros
@@ -43,7 +43,7 @@ def test_the_page_is_drawn_from_the_code():
 def test_every_topic_type_and_node_is_on_it():
     assert ROWS.items() >= TOPICS.items()
     assert {topic.type for topic in ROWS.values()} == set(CONVENTIONS)
-    assert set(NODES) == set(RIGHTS)
+    assert set(NODES) == set(NODE_RIGHTS)
 
 
 @pytest.mark.parametrize('name', NODES)
@@ -80,9 +80,9 @@ def test_a_node_offers_the_services_of_the_table(nodes, name):
     own = absolute(name)
     listed = {
         service.replace('~', own) if service[0] == '~' else absolute(service)
-        for service in (*RIGHTS[name].answers, *EVERY_NODE.answers)
+        for service in (*NODE_RIGHTS[name].answers, *EVERY_NODE.answers)
     }
     assert set(found) == listed
-    for service in RIGHTS[name].answers:
+    for service in NODE_RIGHTS[name].answers:
         full = service.replace('~', own) if service[0] == '~' else absolute(service)
         assert found[full] == ['std_srvs/srv/Trigger']
