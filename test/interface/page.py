@@ -32,6 +32,7 @@ from trawl_ros.records.topics import (
     INSTRUMENTS,
     STATIC_TRANSFORMS,
     SYNC,
+    TETHER,
     TRANSFORMS,
     TRUTH,
     TWINS,
@@ -120,6 +121,7 @@ SECTIONS: dict[str, tuple[Topic, ...]] = {
     'With covariance, and estimates by name': TWINS,
     'Estimates and states': ESTIMATES,
     'Commands': COMMANDS,
+    'Behind a vehicle of another simulator': TETHER,
     'Clock, transforms and progress': (CLOCK, TRANSFORMS, STATIC_TRANSFORMS, PROGRESS),
 }
 

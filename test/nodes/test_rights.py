@@ -18,6 +18,7 @@ from trawl_ros.nodes.identification_node import IdentificationNode  # noqa: E402
 from trawl_ros.nodes.nmea_in import NmeaIn  # noqa: E402
 from trawl_ros.nodes.nmea_out import NmeaOut  # noqa: E402
 from trawl_ros.nodes.sim_node import SimNode  # noqa: E402
+from trawl_ros.nodes.tether_node import TetherNode  # noqa: E402
 from trawl_ros.nodes.trawl_sonar_node import TrawlSonarNode  # noqa: E402
 from trawl_ros.nodes.trial_node import TrialNode  # noqa: E402
 from trawl_ros.nodes.vessel_node import VesselNode  # noqa: E402
@@ -25,6 +26,7 @@ from trawl_ros.nodes.view_node import ViewNode  # noqa: E402
 from trawl_ros.nodes.winch_node import WinchNode  # noqa: E402
 from trawl_ros.records.rights import EVERY_NODE, OPERATOR, SET_POINTS, enclaves  # noqa: E402
 from trawl_ros.records.topics import CLOCK, STATIC_TRANSFORMS, TRANSFORMS, absolute  # noqa: E402
+from trawl_ros.records.truth import SIDES  # noqa: E402
 
 pytestmark = pytest.mark.ros
 
@@ -40,6 +42,7 @@ NODES = (
     NmeaIn,
     NmeaOut,
     SimNode,
+    TetherNode,
     TrawlSonarNode,
     TrialNode,
     VesselNode,
@@ -55,6 +58,7 @@ AT_TIMES = {
     CLOCK.name,
     TRANSFORMS.name,
     STATIC_TRANSFORMS.name,
+    *(absolute(f'door/{side}/slant_range') for side in SIDES),
 }
 """Topics of ROS itself, and those that depend on parameters or on what is installed."""
 
@@ -69,6 +73,7 @@ def used(open_graph, gear_path, tmp_path_factory):
             'IdentificationNode': gear,
             'DiscrepancyNode': gear,
             'TrialNode': gear,
+            'TetherNode': gear,
             'BagRecorder': {'output': str(tmp_path_factory.mktemp('rights') / 'bag')},
             'FoxgloveNode': {'port': VIEWED},
             'NmeaIn': {'links': ['udp://:20232'], 'systems': SPOKEN},

@@ -33,7 +33,11 @@ def test_the_file_that_ships_is_what_the_command_prints() -> None:
 
 
 def test_every_node_of_the_package_has_rights() -> None:
-    programs = {entry.name for entry in distribution('trawl_ros').entry_points}
+    programs = {
+        entry.name
+        for entry in distribution('trawl_ros').entry_points
+        if entry.group == 'console_scripts'
+    }
     assert set(NODE_RIGHTS) == programs - {'trawl'}
 
 

@@ -13,6 +13,7 @@ from trawl_ros.records.topics import (
     ESTIMATES,
     INSTRUMENTS,
     STATIC_TRANSFORMS,
+    TETHER,
     TOPICS,
     TRANSFORMS,
     TRUTH,
@@ -23,7 +24,7 @@ from trawl_ros.records.topics import (
 
 
 def test_no_name_stands_twice():
-    rows = (*TRUTH, *INSTRUMENTS, *TWINS, *ESTIMATES, *COMMANDS)
+    rows = (*TRUTH, *INSTRUMENTS, *TWINS, *TETHER, *ESTIMATES, *COMMANDS)
     assert len(TOPICS) == len(rows) + len((CLOCK, TRANSFORMS, STATIC_TRANSFORMS))
 
 

@@ -28,11 +28,8 @@ from trawl_ros.records.truth import SIDES
 from trawl_ros.simulation.tether import Tether, VehicleMotion
 from trawl_ros.solver.stepper import StepFailed
 
-ODOMETRY, ODOMETRY_TYPE = 'tether/odom', 'nav_msgs/msg/Odometry'
-WRENCH, WRENCH_TYPE = 'tether/wrench', 'geometry_msgs/msg/WrenchStamped'
-GEAR, GEAR_TYPE = 'tether/gear', 'visualization_msgs/msg/MarkerArray'
+ODOMETRY, WRENCH, GEAR = 'tether/odom', 'tether/wrench', 'tether/gear'
 FORCES = {side: f'tether/{side}/force' for side in SIDES}
-FORCE_TYPE = 'geometry_msgs/msg/Vector3Stamped'
 MAX_GAP_S = 2.0
 """Longest time between two odometry messages (s) over which the gear is towed on."""
 
@@ -67,12 +64,12 @@ class TetherNode(TrawlNode):
         self._drawn = -math.inf
         self._refused_at = math.nan
         self._problem = ''
-        self.advertise(WRENCH, WRENCH_TYPE)
-        self.advertise(GEAR, GEAR_TYPE)
+        self.advertise(WRENCH)
+        self.advertise(GEAR)
         for topic in FORCES.values():
-            self.advertise(topic, FORCE_TYPE)
+            self.advertise(topic)
         self.listen(WINCH_COMMAND, self._command, STREAM)
-        self.listen(ODOMETRY, self._follow, CONSUMER, ODOMETRY_TYPE)
+        self.listen(ODOMETRY, self._follow, CONSUMER)
 
     def statuses(self) -> list[Status]:
         """Return the status of the tow."""
@@ -147,7 +144,7 @@ class TetherNode(TrawlNode):
         rate = self.parameters['gear_rate_hz']
         if rate and stamp / SECOND >= self._drawn + 1.0 / rate - 1e-9:
             self._drawn = stamp / SECOND
-            if self.advertise(GEAR, GEAR_TYPE).get_subscription_count():
+            if self.advertise(GEAR).get_subscription_count():
                 self.send(GEAR, gear_markers(tether.picture(stamp), fixed)[1])
 
 

@@ -176,7 +176,11 @@ def write_sizes(shape: GearShape, views: Views) -> list[Artist]:
         )
         middle = 0.5 * (port + starboard)
         spread = float(np.linalg.norm(port - starboard))
-        drawn.append(views.top.text(*middle[:2], f' {spread:.0f} m', color=SIZES, va='center'))
+        drawn.append(
+            views.top.text(
+                float(middle[0]), float(middle[1]), f' {spread:.0f} m', color=SIZES, va='center'
+            )
+        )
         drawn.append(
             views.side.annotate(
                 f'doors {-middle[2]:.0f} m deep',

@@ -241,7 +241,8 @@ def _ordinary(series: Series) -> FloatArray:
         return values
     off = np.abs(values - median_filter(values, size=DOTS.neighbours, mode='nearest'))
     std = max(1.4826 * float(np.median(off)), 1e-3 * float(np.median(np.abs(values))))
-    return values[off <= DOTS.far_std * std]
+    ordinary: FloatArray = values[off <= DOTS.far_std * std]
+    return ordinary
 
 
 def _dots(axes: Axes, series: Series, curve: Curve, limits: tuple[float, float]) -> int:

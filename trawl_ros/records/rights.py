@@ -15,6 +15,7 @@ from trawl_ros.records.topics import (
     INSTRUMENTS,
     STATIC_TRANSFORMS,
     SYNC,
+    TETHER,
     TOPICS,
     TRANSFORMS,
     TRUTH,
@@ -81,6 +82,7 @@ _SERVICES: dict[str, tuple[str, ...]] = {
     'identification_node': ('identification/finish',),
     'discrepancy_node': ('discrepancy/finish', 'discrepancy/acknowledge', 'discrepancy/dismiss'),
     'bag_recorder': (),
+    'tether_node': (),
     'bag_player': ('~/pause', '~/resume', '~/toggle_paused', '~/play_next'),
 }
 """Services that each node offers."""
@@ -88,11 +90,11 @@ _SERVICES: dict[str, tuple[str, ...]] = {
 _SOURCES = ('sim_node', 'bag_player')
 """Nodes that wait for consumers."""
 
-_NOT_WAITED_FOR = (*_SOURCES, 'nmea_in', 'set_points', 'view_node', 'foxglove_node')
+_NOT_WAITED_FOR = (*_SOURCES, 'nmea_in', 'set_points', 'tether_node', 'view_node', 'foxglove_node')
 
 # Recorded commands are not played on a secured graph.
 _ALL_PUBLISHED = {'bag_player': (*TRUTH, *INSTRUMENTS, *ESTIMATES)}
-_ALL_HEARD = {'foxglove_node': (*CONTRACT, *TWINS), 'bag_recorder': CONTRACT}
+_ALL_HEARD = {'foxglove_node': (*CONTRACT, *TWINS, *TETHER), 'bag_recorder': CONTRACT}
 """Nodes that play, record or show every topic of some kinds."""
 
 

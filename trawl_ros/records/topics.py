@@ -174,11 +174,38 @@ TWINS = (
 )  # fmt: skip
 """Topics that say in another type what others say; a recorder has them where asked to."""
 
+_TETHERED = ('tether_node',)
+
+TETHER = (
+    Topic(
+        'tether/odom', 'nav_msgs/msg/Odometry', MAP, None,
+        'Vehicle of another simulator: pose with z up from the surface, twist in its own axes.',
+        heard_by=_TETHERED,
+    ),
+    Topic(
+        'tether/wrench', 'geometry_msgs/msg/WrenchStamped', VESSEL, 10.0,
+        'Force and moment of the gear on the origin of the vehicle, in its axes.', _TETHERED,
+    ),
+    *(
+        Topic(
+            f'tether/{side}/force', 'geometry_msgs/msg/Vector3Stamped', VESSEL, 10.0,
+            f"Force of the {side} warp on its block, N, in the vehicle's axes.", _TETHERED,
+        )
+        for side in SIDES
+    ),
+    Topic(
+        'tether/gear', 'visualization_msgs/msg/MarkerArray', MAP, 1.0,
+        'The towed gear as line segments coloured by tension.', _TETHERED, ('foxglove_node',),
+    ),
+)  # fmt: skip
+"""Topics of a gear behind a vehicle of another simulator; its frames are those of its odometry."""
+
 COMMANDS = (
     Topic(
         'command/winch', 'sensor_msgs/msg/JointState', VESSEL, None,
         'position = wanted warp length per winch, m.',
-        ('autotrawl_node', 'trial_node', 'set_points'), ('sim_node', 'trial_node', 'view_node'),
+        ('autotrawl_node', 'trial_node', 'set_points'),
+        ('sim_node', 'tether_node', 'trial_node', 'view_node'),
     ),
     Topic(
         'command/vessel', 'geometry_msgs/msg/TwistStamped', VESSEL, None,
@@ -216,7 +243,8 @@ CONTRACT: tuple[Topic, ...] = (*TRUTH, *INSTRUMENTS, *ESTIMATES, *COMMANDS)
 """Topics that are recorded."""
 
 TOPICS: dict[str, Topic] = {
-    topic.name: topic for topic in (*CONTRACT, *TWINS, CLOCK, TRANSFORMS, STATIC_TRANSFORMS)
+    topic.name: topic
+    for topic in (*CONTRACT, *TWINS, *TETHER, CLOCK, TRANSFORMS, STATIC_TRANSFORMS)
 }
 
 
