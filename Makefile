@@ -27,10 +27,10 @@ UV = index="$${PIP_INDEX_URL:-$$($(BIN)/python -m pip config get global.index-ur
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 # Pages that the prose rule passes over: reports that commands write, and those still to be shortened.
-PROSE_REPORTS := docs/benchmark.md docs/validation/* \
+PROSE_REPORTS := docs/benchmark.md docs/interface.md docs/validation/* \
     $(addprefix docs/studies/,$(addsuffix .md,chaos discrepancy fuzz identification instruments motion \
     onset robustness soak))
-PROSE_LATER := README.md docs/diagnosis.md docs/guides/ros2.md docs/identification/* docs/studies/history.md
+PROSE_LATER := docs/diagnosis.md docs/identification/* docs/studies/history.md
 PROSE := $(PROSE_REPORTS) $(PROSE_LATER)
 
 # Tests of what needs no steady state.

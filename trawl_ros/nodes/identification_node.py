@@ -91,11 +91,11 @@ class IdentificationNode(TrawlNode):
         Text('output', '', 'Folder for identification.json and figures; where it holds files, a '
              'number is put behind its name; none if empty.'),
         Text('state', '', 'File that takes the state after each window, and from which a node that '
-             'is started anew goes on; none if empty.'),
+             'is started again goes on; none if empty.'),
         Flag('motion', True, 'True if all of the tow is learned from, hauling and veering too, '
-             'beside its steady windows.'),
+             'as well as its steady windows.'),
         Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
-             'are set beside the estimate in the report.'),
+             'are compared with the estimate in the report.'),
         *ADVICE_SPECS,
         *WINDOW_SPECS,
     )  # fmt: skip

@@ -152,7 +152,7 @@ class InstrumentNode(TrawlNode, ABC):
         Number('seed', -1, 'none', -1, 2**32 - 1, 'Seed of all noise; -1 is that of the scenario, '
                'or 0 without one.', whole=True),
         Names('faults', "Faults that are on, each as 'PLACE: FAULT', such as 'door/spread: offset "
-              "3'; beside those of the scenario and of command/fault.", live=True),
+              "3'; with those of the scenario and of command/fault.", live=True),
         Names('wait_for', 'Consumers of the samples (node names) without which this node does not '
               'announce itself to the simulation.'),
     )  # fmt: skip

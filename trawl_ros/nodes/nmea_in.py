@@ -78,7 +78,7 @@ class NmeaIn(TrawlNode):
         Flag('commands', False, 'Pass on set points of the systems (such as set_points) to '
              'command/winch and command/vessel.'),
         Number('command_timeout_s', 10.0, 's', 0.5, 600.0, 'Silence of set points after which the '
-               'winches are told to hold.'),
+               'winches must hold.'),
         replace(MAX_AGE, sentence='Largest difference between the tag block of a set point and the '
                 'time of this node; others are refused; 0 takes any, and any without tag block.'),
         Number('min_length_m', 50.0, 'm', 0.0, LIMITS.warp_m[1],

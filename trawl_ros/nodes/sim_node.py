@@ -123,7 +123,7 @@ class SimNode(TrawlNode):
                'command/vessel after which the ship steers straight on, and without a '
                'command/winch after which the winches stop; 0 is never.', live=True),
         MAX_AGE,
-        Text('winch_velocity', 'ignored', 'What a velocity beside the position of a command/winch '
+        Text('winch_velocity', 'ignored', 'What a velocity next to the position of a command/winch '
              'does: nothing; honoured it is the greatest speed of that winch; refused the command '
              'is left out.', choices=('ignored', 'honoured', 'refused'), live=True),
     )  # fmt: skip

@@ -14,7 +14,7 @@ TRIAL_SPECS = (
     Text('gear', 'kaifuha', 'Gear file, or the name of one that comes with the package: its ship, '
          'winches and water.'),
     Text('state', '', 'File that takes the state of the trial, and from which a node that is '
-         'started anew goes on; none if empty.'),
+         'started again goes on; none if empty.'),
     Number('hours', TRIAL.hours, 'h', 0.05, 240.0, 'Time for the trial, all waiting counted.',
            live=True),
     Number('wanted_percent', 100 * TRIAL.wanted_share, '%', 0.1, 100.0, 'A quantity of the '
