@@ -33,7 +33,7 @@ class FoxgloveNode(TrawlNode):
         Text('host', THIS_MACHINE, 'Address of this machine at which viewers may connect. Whoever '
              f'reaches another one than {THIS_MACHINE} sees all topics.'),
         Number('port', 8765, 'TCP', 1, 65_535, 'Port at which viewers may connect.', whole=True),
-        Names('origins', 'Origins of web pages that may connect, in addition to those of this machine.',
+        Names('origins', 'Origins of web pages that may connect; those of this machine always may.',
               ('https://app.foxglove.dev', 'file://')),
         Number('backlog', 200, 'messages', 10, 5000, 'Messages that wait for a slow viewer at '
                'most; older ones are given up.', whole=True),
