@@ -7,7 +7,7 @@ import numpy as np
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.nuisances import layout_of
-from trawl_ros.estimation.motion.search import MotionSearch, OnTow, count, towed_flags
+from trawl_ros.estimation.motion.search import MotionSearch, OnTow
 from trawl_ros.estimation.motion.steps import Place, misfit, shared_std, step
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
@@ -23,10 +23,6 @@ FINDINGS = 3
 """Towings after which weights and sizes of the errors are found, before they stay; and so do
 stretches that are lost."""
 
-LEAST = 1.0 / 3.0
-"""Part of the stretches that a fit must be able to tow along where it begins for want of another
-beginning from which it comes to rest."""
-
 
 def fit_motion(
     gear: TowedGear,
@@ -37,9 +33,6 @@ def fit_motion(
     on_stretch: OnTow = lambda iteration, tow, stretch: None,
 ) -> MotionFit:
     """Fit tows in motion.
-
-    It begins nearer to what is known before where boards of the model fall with the start, and with
-    the start itself where it does not come to rest from there.
 
     Parameters
     ----------
@@ -58,17 +51,7 @@ def fit_motion(
     here = [np.zeros(len(layout)) for layout in layouts] if start is None else list(start)
     search = MotionSearch(gear, tows, layouts, prior, options, on_stretch, here)
     search.begin()
-    fit = _rested(search)
-    if fit.converged or not search.began_nearer:
-        return fit
-    # Boards that all but fall are learned from what of the tow their model is towed along, rather
-    # than along a way there on which it falls elsewhere.
-    again = MotionSearch(gear, tows, layouts, prior, options, on_stretch, here)
-    again.begin(nearer=False)
-    if count(towed_flags(again.linear)) < LEAST * sum(len(tow) for tow in tows):
-        return fit
-    other = _rested(again)
-    return other if other.converged else fit
+    return _rested(search)
 
 
 def _rested(search: MotionSearch) -> MotionFit:
@@ -86,9 +69,6 @@ def _rested(search: MotionSearch) -> MotionFit:
             found += 1
             sizes = search.find(sizes)
             data = search.data(search.linear, search.here)
-        if temper > 1.0:
-            # Far from rest boards may fall where they will not, with hundreds of halved steps.
-            search.halved = ()
         now = sizes.tempered(temper)
         target = step(data, search.here, search.prior, now, options.largest_step)
         std = shared_std(data, now)[:12]

@@ -1,9 +1,9 @@
 """Columns of a linearised tow by all its parameters, each in units of its prior std.
 
 Parameters that all tows share come first: coefficients, added mass, the net's factors where these
-are estimated along, and the constant part of the model's error. Those of one tow follow: slow
-motions at its beginning, errors of its inputs, those that stay and those at knots along the way,
-and calibration errors of its sensors.
+are estimated along, and the constant part of the model's error. Those of one tow follow: the
+slowest motions with which a part of it may begin, errors of its inputs, those that stay and those
+at knots along the way, and calibration errors of its sensors.
 """
 
 from dataclasses import dataclass
@@ -20,8 +20,9 @@ from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.motion.parameters import NET
 
-MOTION_STD_M = 3.0
-"""Prior std (m) of the slow motions with which a tow begins; assumed."""
+START_STD_M = 10.0
+"""Prior std (m) of the slowest motions with which a part of a tow begins; assumed. Seven minutes
+after 40 m of warp and 0.3 m/s the slowest was still 15 m."""
 
 ADDED_MASS_STD = 0.5
 """Prior std of the boards' added mass, as a part of the cylinder of water around them: that of
@@ -34,8 +35,8 @@ class TowLayout:
 
     Attributes
     ----------
-    motions
-        Number of slow motions.
+    starts
+        Number of slow motions with which its parts may begin.
     knots
         Channel and number of knots of each input's error along the way.
     channels
@@ -46,7 +47,7 @@ class TowLayout:
         Prior std of the factors on drag and weight of the net; 0 where these are held.
     """
 
-    motions: int
+    starts: int
     knots: tuple[tuple[str, int], ...]
     channels: tuple[str, ...]
     model: float = 1.0
@@ -74,14 +75,14 @@ class TowLayout:
         return slice(self.of_gear, self.shared)
 
     @property
-    def of_motions(self) -> Slice:
-        """Slice of the slow motions."""
-        return slice(self.shared, self.shared + self.motions)
+    def of_starts(self) -> Slice:
+        """Slice of the slowest motions with which parts begin."""
+        return slice(self.shared, self.shared + self.starts)
 
     @property
     def of_errors(self) -> Slice:
         """Slice of the errors of the inputs."""
-        return slice(self.of_motions.stop, self.of_motions.stop + len(INPUT_ERRORS))
+        return slice(self.of_starts.stop, self.of_starts.stop + len(INPUT_ERRORS))
 
     @property
     def of_knots(self) -> Slice:
@@ -114,7 +115,7 @@ class TowLayout:
 def layout_of(tow: MovingTow, gear: TowedGear, model: float) -> TowLayout:
     """Layout of a tow of a gear."""
     knots = tuple((knots.channel, knots.number) for knots in tow.inputs.knots)
-    return TowLayout(gear.motions, knots, tow.channels, model, gear.net_std)
+    return TowLayout(tow.starts, knots, tow.channels, model, gear.net_std)
 
 
 def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> FloatArray:
@@ -132,7 +133,7 @@ def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> 
                 total[:, row, column] = layout.model * (
                     MODEL_ANGLE if angle else MODEL_FRACTION * values
                 )
-    total[..., layout.of_motions] = linear.by_motions * MOTION_STD_M
+    total[..., layout.of_starts] = linear.by_starts * START_STD_M
     total[..., layout.of_errors] = linear.by_errors
     for knots, own, _ in linear.tow.inputs.knot_places:
         total[..., layout.of_knots][..., own] = linear.by_knots[..., own] @ knots.root
@@ -163,6 +164,6 @@ def linear_part(layout: TowLayout) -> FloatArray:
     motions, calibration and the constant errors of the model.
     """
     flags = np.zeros(len(layout))
-    for part in (layout.of_model, layout.of_motions, layout.of_calibration):
+    for part in (layout.of_model, layout.of_starts, layout.of_calibration):
         flags[part] = 1.0
     return flags

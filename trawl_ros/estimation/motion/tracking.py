@@ -34,7 +34,6 @@ from trawl_ros.estimation.motion.search import (
 from trawl_ros.estimation.motion.sizes import LinearData
 from trawl_ros.estimation.motion.start import starting_point
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
-from trawl_ros.estimation.motion.towing.halved import TowHalved, copied
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
@@ -205,11 +204,8 @@ class MotionTracker:
         return self._linearisation(search, there)
 
     def _linearisation(self, search: MotionSearch, place: Place) -> GrowingLinearisation:
-        halved: dict[int, TowHalved] = {}
-        if self._here is not None and self._temper == 1.0:
-            halved = {stamp: copied(own) for stamp, own in self._here.halved.items()}
         return GrowingLinearisation(
-            self._towed, self._prior, search.tows, search.layouts, list(place), halved
+            self._towed, self._prior, search.tows, search.layouts, list(place)
         )
 
     def _start(self, search: MotionSearch, windows: Estimate | None) -> Place:

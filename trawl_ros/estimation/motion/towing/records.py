@@ -1,16 +1,12 @@
 """Records of a tow in motion: means of short stretches, and what the gear was towed with."""
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.estimation.motion.towing.inputs import TowInputs
-
-SETTLING_S = 300.0
-"""Time that a tow which is begun anew is given before its stretches count: by then the slowest
-motion, which is unknown there, has faded."""
+from trawl_ros.estimation.motion.towing.linearisation import SLOW_MOTIONS
 
 
 @dataclass(frozen=True)
@@ -53,6 +49,11 @@ class MovingTow:
         Numbers of the stretches in which a board has fallen; they do not count.
     swell
         Swing of the tension within stretches, in std over its mean; 0 where no swell is felt.
+    held_s : (n,) array
+        Time (s) for which the inputs have been held at the end of each steady stretch, in which the
+        gear has settled but for its slowest motion; 0 of moving stretches, and where not given.
+    steady_only
+        True if moving stretches are not predicted.
     """
 
     name: str
@@ -68,6 +69,12 @@ class MovingTow:
     left_out: tuple[LeftOut, ...] = ()
     fallen: tuple[int, ...] = ()
     swell: float = 0.0
+    held_s: FloatArray = field(default_factory=lambda: np.zeros(0))
+    steady_only: bool = False
+
+    def __post_init__(self) -> None:
+        if not len(self.held_s):
+            object.__setattr__(self, 'held_s', np.zeros(len(self)))
 
     def __len__(self) -> int:
         return len(self.means)
@@ -78,12 +85,20 @@ class MovingTow:
         return int(self.weights.shape[2]) - 1
 
     @property
-    def standing(self) -> BoolArray:
-        """Flags (n,) of the stretches in which no board has fallen, nor shortly before."""
-        flags = np.ones(len(self), dtype=np.bool_)
-        for stretch in self.fallen:
-            flags[stretch : stretch + 1 + math.ceil(SETTLING_S / self.stretch_s)] = False
-        return flags
+    def steady(self) -> BoolArray:
+        """Flags (n,) of the steady stretches."""
+        return np.asarray(self.held_s > 0.0, np.bool_)
+
+    @property
+    def starts(self) -> int:
+        """Number of slow motions with which its parts may begin: the first, and each steady one."""
+        return SLOW_MOTIONS * (1 + int(self.steady_part[-1]) if len(self) else 1)
+
+    @property
+    def steady_part(self) -> IntArray:
+        """Number (n,) of steady parts that have begun up to each stretch."""
+        before = np.concatenate(([False], self.steady[:-1]))
+        return np.asarray(np.cumsum(self.steady & ~before), np.int64)
 
     @property
     def middles(self) -> FloatArray:
