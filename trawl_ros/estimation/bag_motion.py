@@ -1,6 +1,7 @@
 """Learning from all of the tow in bags, from what their steady windows tell on."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from trawl_ros.bags.samples import SampleStream
@@ -14,6 +15,7 @@ from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.holdout import hold_out_states
 from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.outcome import MotionOutcome
+from trawl_ros.estimation.motion.part_statistics import part_statistics
 from trawl_ros.estimation.motion.parts import parts_of
 from trawl_ros.estimation.motion.series import TowReadings, tow_readings
 from trawl_ros.estimation.motion.start import starting_point
@@ -176,7 +178,7 @@ def moving_tows(
         samples = (sample for _, sample in SampleStream([Path(recording.name)], namespace))
         try:
             read = tow_readings(samples, depth, recording.name)
-            for part in moving_parts(read, recording.name):
+            for part in moving_parts(read, recording.name, statistics=True):
                 tows.append(part)
                 numbers.append(tuple(range(first, first + own)))
         except TrawlError as error:
@@ -185,8 +187,15 @@ def moving_tows(
     return tows, numbers, refused
 
 
-def moving_parts(read: TowReadings, name: str) -> Iterator[MovingTow]:
+def moving_parts(read: TowReadings, name: str, *, statistics: bool = False) -> Iterator[MovingTow]:
     """Divide a tow into parts along which the model can be towed, and these into stretches.
+
+    Parameters
+    ----------
+    read, name
+        Its readings, and its name for people.
+    statistics
+        True to compute the statistics of its steady and moving parts.
 
     Raises
     ------
@@ -202,4 +211,5 @@ def moving_parts(read: TowReadings, name: str) -> Iterator[MovingTow]:
         )
     for place, part in enumerate(parts, start=1):
         several = f', part {place}' if len(parts) > 1 else ''
-        yield moving_tow(part, name + several, STRETCHES)
+        tow = moving_tow(part, name + several, STRETCHES)
+        yield replace(tow, statistics=part_statistics(part, tow)) if statistics else tow

@@ -128,7 +128,9 @@ def moving_tow(read: TowReadings, name: str, options: StretchOptions) -> MovingT
     means[:settling] = np.nan
     why = 'what the gear did before is not known'
     left_out = (LeftOut(0.0, settling * options.stretch_s, why),) if settling else ()
-    means[np.ix_(~steady, [c in STEADY_ONLY for c in channels])] = np.nan
+    for column, channel in enumerate(channels):
+        if channel in STEADY_ONLY:
+            means[~steady, column] = np.nan
     return MovingTow(
         name, read.start_ns, options.step_s, options.stretch_s, channels, means, noise,
         counts.astype(np.int64), weights, inputs,

@@ -149,6 +149,11 @@ def motion_result(report: Report) -> dict[str, object]:
         'whitened': dict(motion.spread),
         'poor_stretches': [vars(each) for each in motion.poor],
         'left_out': [{'tow': name, **vars(part)} for name, part in motion.left_out],
+        'parts': [
+            {'tow': linear.tow.name, **part.record()}
+            for linear in fit.linear
+            for part in linear.tow.statistics
+        ],
         'swells': [{'tow': name, 'swing': swell} for name, swell in motion.swells],
         'not_used': list(motion.refused),
     }

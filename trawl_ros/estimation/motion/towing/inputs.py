@@ -182,7 +182,7 @@ class CorrectedInputs:
         by_errors, by_knots = _by_errors(shown, 1.0), {}
         value = shown + self.errors @ by_errors
         for knots, place, _ in inputs.knot_places:
-            times = step * np.arange(first, last + 1)
+            times: FloatArray = step * np.arange(first, last + 1, dtype=np.float64)
             by_knots[knots.channel] = -hats(times, knots.number, knots.spacing_s).mean(axis=0)
             value[INPUTS.index(knots.channel)] += by_knots[knots.channel] @ self.drifts[place]
         heading = float(inputs.headings[own].mean())

@@ -43,7 +43,7 @@ class Linearisation:
 
 def _sum(one: FloatArray, other: FloatArray) -> FloatArray:
     wide, narrow = (one, other) if one.shape[1] >= other.shape[1] else (other, one)
-    total = wide.copy()
+    total: FloatArray = wide.copy()
     total[:, : narrow.shape[1]] += narrow
     return total
 

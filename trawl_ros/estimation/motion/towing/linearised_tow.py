@@ -54,12 +54,16 @@ class LinearisedTow:
         cls, tow: MovingTow, point: TowedPoint, gear: TowedGear, left_out: tuple[LeftOut, ...]
     ) -> 'LinearisedTow':
         """Tow without any prediction."""
-        examined = sum(len(effect.parameters) for effect in gear.examined)
-        widths = (
-            12, 1, len(INPUT_ERRORS), tow.inputs.number_of_knots, tow.starts, gear.of_net, examined,
-        )  # fmt: skip
-        slopes = [np.zeros((*tow.means.shape, width)) for width in widths]
-        return cls(tow, point, np.full(tow.means.shape, np.nan), *slopes, left_out)
+        of_examined = sum(len(effect.parameters) for effect in gear.examined)
+        of_inputs = len(INPUT_ERRORS), tow.inputs.number_of_knots
+        widths = (12, 1, *of_inputs, tow.starts, gear.of_net, of_examined)
+        coefficients, mass, errors, knots, starts, net, examined = (
+            np.zeros((*tow.means.shape, width)) for width in widths
+        )
+        values = np.full(tow.means.shape, np.nan)
+        return cls(
+            tow, point, values, coefficients, mass, errors, knots, starts, net, examined, left_out
+        )
 
     def put(self, stretch: int, means: Linearisation) -> None:
         """Put the prediction of a stretch in its place."""

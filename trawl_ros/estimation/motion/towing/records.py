@@ -1,10 +1,12 @@
 """Records of a tow in motion: means of short stretches, and what the gear was towed with."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
+from trawl_ros.core.files import finite
 from trawl_ros.estimation.motion.towing.inputs import TowInputs
 from trawl_ros.estimation.motion.towing.linearisation import SLOW_MOTIONS
 
@@ -16,6 +18,44 @@ class LeftOut:
     begin: float
     end: float
     why: str
+
+
+@dataclass(frozen=True)
+class Oscillation:
+    """Oscillation of a channel in a part of a tow.
+
+    Attributes
+    ----------
+    std
+        Standard deviation of the readings about a line through each stretch, SI.
+    period_s
+        Dominant period, s; NaN if none stands out of white noise.
+    """
+
+    std: float
+    period_s: float
+
+
+@dataclass(frozen=True)
+class PartStatistics:
+    """Statistics of a part of a tow, from ``begin_s`` to ``end_s`` after the tow began."""
+
+    begin_s: float
+    end_s: float
+    steady: bool
+    channels: Mapping[str, Oscillation]
+
+    def record(self) -> dict[str, object]:
+        """Record for JSON."""
+        return {
+            'begin_s': self.begin_s,
+            'end_s': self.end_s,
+            'steady': self.steady,
+            'channels': {
+                name: {'std': own.std, 'period_s': finite(own.period_s)}
+                for name, own in self.channels.items()
+            },
+        }
 
 
 @dataclass(frozen=True)
@@ -54,6 +94,8 @@ class MovingTow:
         gear has settled but for its slowest motion; 0 of moving stretches, and where not given.
     steady_only
         True if moving stretches are not predicted.
+    statistics
+        Statistics of its steady and moving parts; none where they were not asked for.
     """
 
     name: str
@@ -71,6 +113,7 @@ class MovingTow:
     swell: float = 0.0
     held_s: FloatArray = field(default_factory=lambda: np.zeros(0))
     steady_only: bool = False
+    statistics: tuple[PartStatistics, ...] = ()
 
     def __post_init__(self) -> None:
         if not len(self.held_s):
