@@ -10,7 +10,7 @@ from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.estimation.fit.objective import stack
 from trawl_ros.estimation.from_gear import NET_STD, board_prior
-from trawl_ros.estimation.motion.fit import fit_motion
+from trawl_ros.estimation.motion.fit import fit_motion, fit_steady
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.holdout import hold_out_states
 from trawl_ros.estimation.motion.nuisances import layout_of
@@ -139,6 +139,9 @@ def fit_tows(
         detail = f'step {iteration}, tow {tow + 1}{of}, minute {minute:.0f}'
         on_progress(WorkProgress(STAGE, done, None, 's', detail))
 
+    steady = fit_steady(towed, tows, prior, options, start, show)
+    if steady is not None and steady.converged:
+        start = list(steady.parameters)
     fit = fit_motion(towed, tows, prior, options, start, show)
     if not fit.readings:
         raise TrawlError('the model cannot be towed along any stretch of the tows')

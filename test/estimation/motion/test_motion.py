@@ -221,7 +221,7 @@ def test_a_steady_part_goes_on_where_the_motion_before_it_ended(coarse):
 
 def test_steady_parts_alone_are_predicted_without_the_motion_between(coarse):
     point = TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, NO_DRIFTS)
-    tow = replace(held_tow(), steady_only=True)
+    tow = held_tow().only_steady()
     there = linearise_tow(TowedGear(coarse), tow, point)
     assert list(np.flatnonzero(there.towed)) == [18, 19, 30, 31]
     assert tow.starts == 3 * SLOW_MOTIONS
@@ -232,7 +232,7 @@ def test_steady_parts_alone_are_predicted_without_the_motion_between(coarse):
 @pytest.mark.parametrize('error', [0, len(INPUT_ERRORS) - 1])
 def test_derivatives_of_steady_parts_are_those_of_their_means(coarse, error):
     knots = knots_of_log(np.arange(0.0, 640.0), 0.03, 640.0, 20.0, 60.0)
-    tow = replace(held_tow(), steady_only=True)
+    tow = held_tow().only_steady()
     tow = replace(tow, inputs=replace(tow.inputs, knots=(knots,)))
     point = TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, np.zeros(knots.number))
     linear = linearise_tow(TowedGear(coarse), tow, point)

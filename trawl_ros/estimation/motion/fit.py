@@ -54,6 +54,25 @@ def fit_motion(
     return _rested(search)
 
 
+def fit_steady(
+    gear: TowedGear,
+    tows: Sequence[MovingTow],
+    prior: ParameterVector,
+    options: MotionOptions,
+    start: Place | None = None,
+    on_stretch: OnTow = lambda iteration, tow, stretch: None,
+) -> MotionFit | None:
+    """Fit the steady parts of tows alone: by equilibria, with nothing integrated in time.
+
+    Parameters are those of `fit_motion`, and so is what it returns; None where no tow has a steady
+    part.
+    """
+    if not any(tow.steady.any() for tow in tows):
+        return None
+    steady = [tow.only_steady() for tow in tows]
+    return fit_motion(gear, steady, prior, options, start, on_stretch)
+
+
 def _rested(search: MotionSearch) -> MotionFit:
     """Fit of a search that has begun, at rest or where it has spent what it may."""
     options, sizes = search.options, search.options.sizes

@@ -101,7 +101,7 @@ def _in_swell(swells: Sequence[tuple[str, float]]) -> str:
         f'Within half a minute the tension swings by a part of its mean (std), {swings}: as in a '
         'swell, or with boards that are tossed about. The ship of the model lies still, so that '
         'intervals are too narrow there, and what is learned is of the gear in that swell '
-        '(docs/identification/motion.md).'
+        '(docs/identification/how_it_works.md).'
     )
 
 

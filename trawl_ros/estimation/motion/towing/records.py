@@ -1,7 +1,7 @@
 """Records of a tow in motion: means of short stretches, and what the gear was towed with."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -131,6 +131,11 @@ class MovingTow:
     def steady(self) -> BoolArray:
         """Flags (n,) of the steady stretches."""
         return np.asarray(self.held_s > 0.0, np.bool_)
+
+    def only_steady(self) -> 'MovingTow':
+        """Return the tow without its moving stretches, which are not predicted either."""
+        means = np.where(self.steady[:, None], self.means, np.nan)
+        return replace(self, means=means, steady_only=True)
 
     @property
     def starts(self) -> int:
