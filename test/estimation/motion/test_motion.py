@@ -9,7 +9,8 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import GROUPS
-from trawl_ros.estimation.motion.information import LinearGroup, joined, own_values
+from trawl_ros.estimation.least_squares.information import joined, own_values
+from trawl_ros.estimation.motion.information import LinearGroup
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, GroupRows, changes
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
 from trawl_ros.estimation.motion.towing import lineariser
@@ -217,6 +218,26 @@ def test_a_steady_part_goes_on_where_the_motion_before_it_ended(coarse):
     assert np.all(away < 1.5 * tow.noise[36:])
     size = np.linalg.norm(moving.by_coefficients[36:])
     assert np.linalg.norm((chain.by_coefficients - moving.by_coefficients)[36:]) < 0.05 * size
+
+
+def test_held_inputs_are_followed_in_longer_steps(coarse):
+    tow = replace(course_tow(680.0), step_s=2.0)
+    quiet = [stretch for stretch in range(len(tow)) if tow.is_quiet(stretch)]
+    assert quiet == [9, 10, *range(21, 34)]
+    step_s, weights = tow.steps_of(30)
+    assert step_s == 4.0
+    np.testing.assert_allclose(weights.sum(axis=1), 1.0)
+    line = np.arange(0.0, 20.5, 4.0)
+    np.testing.assert_allclose(weights @ line, tow.weights[30] @ np.arange(0.0, 20.5, 2.0))
+    point = TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, NO_DRIFTS)
+    longer = linearise_tow(TowedGear(coarse), tow, point)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(type(tow), 'is_quiet', lambda *_: False)
+        usual = linearise_tow(TowedGear(coarse), tow, point)
+    np.testing.assert_array_equal(longer.values[:9], usual.values[:9])
+    assert np.all(np.abs(longer.values - usual.values) < 0.5 * tow.noise)
+    away = np.linalg.norm(longer.by_coefficients - usual.by_coefficients)
+    assert 0.0 < away < 0.02 * np.linalg.norm(usual.by_coefficients)
 
 
 def test_steady_parts_alone_are_predicted_without_the_motion_between(coarse):

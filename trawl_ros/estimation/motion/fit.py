@@ -5,10 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.bounded_step import shared_std
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.search import MotionSearch, OnTow
-from trawl_ros.estimation.motion.steps import Place, misfit, shared_std, step
+from trawl_ros.estimation.motion.steps import Place, misfit, step
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 
@@ -90,8 +91,9 @@ def _rested(search: MotionSearch) -> MotionFit:
             data = search.data(search.linear, search.here)
         now = sizes.tempered(temper)
         target = step(data, search.here, search.prior, now, options.largest_step)
-        std = shared_std(data, now)[:12]
-        size = float(np.max(np.abs(target[0][:12] - search.here[0][:12]) / std))
+        own = slice(0, len(search.prior))
+        std = shared_std(data.information(now), data.precisions(now.log), data.shared)[own]
+        size = float(np.max(np.abs(target[0][own] - search.here[0][own]) / std))
         if temper == 1.0 and size < options.tolerance:
             converged = True
             reason = (

@@ -54,9 +54,19 @@ class TowLayout:
     net_std: float = 0.0
 
     @property
+    def of_coefficients(self) -> Slice:
+        """Slice of the boards' coefficients."""
+        return slice(0, len(COEFFICIENTS))
+
+    @property
+    def of_added_mass(self) -> Slice:
+        """Slice of the boards' added mass."""
+        return slice(len(COEFFICIENTS), len(COEFFICIENTS) + 1)
+
+    @property
     def of_net(self) -> Slice:
         """Slice of the factors on drag and weight of the net."""
-        first = len(COEFFICIENTS) + 1
+        first = self.of_added_mass.stop
         return slice(first, first + (len(NET) if self.net_std else 0))
 
     @property
@@ -122,8 +132,8 @@ def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> 
     """Derivatives (n, k, p) of measured means by all parameters, in units of their prior std."""
     n, k = linear.values.shape
     total = np.zeros((n, k, len(layout)))
-    total[..., :12] = linear.by_coefficients * prior_std
-    total[..., 12:13] = linear.by_added_mass * ADDED_MASS_STD
+    total[..., layout.of_coefficients] = linear.by_coefficients * prior_std
+    total[..., layout.of_added_mass] = linear.by_added_mass * ADDED_MASS_STD
     total[..., layout.of_net] = linear.by_net * layout.net_std
     for column, group in enumerate(GROUPS, start=layout.of_model.start):
         for row, name in enumerate(layout.channels):
@@ -151,8 +161,8 @@ def point_of(
     scaled = z[layout.of_knots]
     drifts = [knots.root @ scaled[own] for knots, own, _ in tow.inputs.knot_places]
     return TowedPoint(
-        coefficients=start + prior_std * z[:12],
-        added_mass=float(ADDED_MASS_STD * z[12]),
+        coefficients=start + prior_std * z[layout.of_coefficients],
+        added_mass=float(ADDED_MASS_STD * z[layout.of_added_mass][0]),
         errors=z[layout.of_errors],
         drifts=np.concatenate((np.zeros(0), *drifts)),
         net=layout.net(z),

@@ -10,8 +10,9 @@ from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimate import NetFactor
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.information import joined
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
-from trawl_ros.estimation.motion.information import LinearGroup, joined
+from trawl_ros.estimation.motion.information import LinearGroup
 from trawl_ros.estimation.motion.nuisances import (
     TowLayout,
     columns,
@@ -123,10 +124,11 @@ class MotionSearch:
         data, prior = self.data(self.linear, self.here), self.prior
         told = joined(data.information(sizes), data.precisions(sizes.log), data.shared)
         every = np.linalg.inv(told.matrix + np.eye(data.shared))
-        covariance, layout, known = every[:12, :12], self.layouts[0], self.gear.net_std
-        std = known * np.sqrt(np.diag(every)[layout.of_net])
+        own, layout, known = slice(0, len(prior)), self.layouts[0], self.gear.net_std
+        covariance = every[own, own]
+        net_std = known * np.sqrt(np.diag(every)[layout.of_net])
         return MotionFit(
-            values=prior.start + prior.std * place[0][:12],
+            values=prior.start + prior.std * place[0][own],
             matrix=told.matrix,
             covariance=covariance * np.outer(prior.std, prior.std),
             parameters=tuple(place),
@@ -141,8 +143,8 @@ class MotionSearch:
             converged=converged,
             reason=reason,
             net=tuple(
-                NetFactor(what, float(value), float(own), known)
-                for what, value, own in zip(NET, layout.net(place[0]), std, strict=False)
+                NetFactor(what, float(value), float(std), known)
+                for what, value, std in zip(NET, layout.net(place[0]), net_std, strict=False)
             ),
         )
 

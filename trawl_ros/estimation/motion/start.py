@@ -34,7 +34,7 @@ def starting_point(
         Its numbers among the tows of the estimate; none where it has no window.
     """
     z = np.zeros(len(layout))
-    z[:12] = prior.departure(estimate.values)
+    z[: len(prior)] = prior.departure(estimate.values)
     if layout.net_std and estimate.net:
         z[layout.of_net] = [(factor.value - 1.0) / layout.net_std for factor in estimate.net]
     own = [bias for bias in estimate.tow_biases if bias.tow in numbers]

@@ -14,10 +14,10 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.information import own_values
 from trawl_ros.estimation.motion.fit import COOLER, NEAR
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.growing import GrowingLinearisation
-from trawl_ros.estimation.motion.information import own_values
 from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.estimation.motion.search import (
@@ -159,7 +159,7 @@ class MotionTracker:
         fit = search.fit(sizes, place, self._towings, converged=False, reason='')
         if not fit.readings:
             return None
-        away = self._prior.std * np.abs(place[0][:12] - search.here[0][:12])
+        away = self._prior.std * np.abs((place[0] - search.here[0])[: len(self._prior)])
         moved = float(np.max(away / np.sqrt(np.diag(fit.covariance))))
         self._held = self._temper == 1.0 and moved < (FAR if self._held else HOLDS)
         reason = f'{moved:.2g} std from where the model was towed'

@@ -56,7 +56,7 @@ class LinearisedTow:
         """Tow without any prediction."""
         of_examined = sum(len(effect.parameters) for effect in gear.examined)
         of_inputs = len(INPUT_ERRORS), tow.inputs.number_of_knots
-        widths = (12, 1, *of_inputs, tow.starts, gear.of_net, of_examined)
+        widths = (len(point.coefficients), 1, *of_inputs, tow.starts, gear.of_net, of_examined)
         coefficients, mass, errors, knots, starts, net, examined = (
             np.zeros((*tow.means.shape, width)) for width in widths
         )

@@ -201,12 +201,13 @@ class TowLineariser:
         if self._moving is None:
             self._moving = self._begun(tow, begin)
         moving = self._moving
-        instants = moving.advance_to(begin + tow.stretch_s, tow.step_s)
+        step_s, weights = tow.steps_of(stretch)
+        instants = moving.advance_to(begin + tow.stretch_s, step_s)
         if moving.fallen:
             self._fail('a board of the model falls over')
         if moving.surfaced:
             raise NotPredicted('the gear of the model breaks the surface')
-        means = self._parts(moving, moving.average(instants, tow.weights[stretch], begin))
+        means = self._parts(moving, moving.average(instants, weights, begin))
         if np.any(np.abs(means.by['coefficients']) > UNSTABLE * tow.noise[stretch][:, None]):
             self._fail('the motion of the model is unstable')
         return means

@@ -10,6 +10,10 @@ from trawl_ros.core.files import finite
 from trawl_ros.estimation.motion.towing.inputs import TowInputs
 from trawl_ros.estimation.motion.towing.linearisation import SLOW_MOTIONS
 
+QUIET_RANGES = np.array([0.3, 0.3, 0.06])
+"""Largest ranges of warp lengths (m) and smoothed speed (m/s) through a minute in which they are
+held; the log's noise alone makes 0.04 m/s."""
+
 
 @dataclass(frozen=True)
 class LeftOut:
@@ -147,6 +151,27 @@ class MovingTow:
         """Number (n,) of steady parts that have begun up to each stretch."""
         before = np.concatenate(([False], self.steady[:-1]))
         return np.asarray(np.cumsum(self.steady & ~before), np.int64)
+
+    def is_quiet(self, stretch: int) -> bool:
+        """Return True if the inputs are held in a stretch and in the one before."""
+        size = self.stretch_s / self.inputs.grid_s
+        own = slice(round(max(stretch - 1, 0) * size), round((stretch + 1) * size) + 1)
+        ranges = np.ptp(self.inputs.values[own], axis=0)
+        return stretch > 0 and bool(np.all(ranges <= QUIET_RANGES))
+
+    def steps_of(self, stretch: int) -> tuple[float, FloatArray]:
+        """Step (s) in which a moving stretch is integrated, and weights (k, s + 1) of its instants.
+
+        While inputs are held steps are twice as long: depths change by less than the noise of their
+        means for it, and derivatives by 0.5 %.
+        """
+        weights = self.weights[stretch]
+        if self.steps % 2 or not self.is_quiet(stretch):
+            return self.step_s, weights
+        coarse, between = weights[:, ::2].copy(), 0.5 * weights[:, 1::2]
+        coarse[:, :-1] += between
+        coarse[:, 1:] += between
+        return 2.0 * self.step_s, coarse
 
     @property
     def middles(self) -> FloatArray:
