@@ -235,15 +235,16 @@ class ModelTow:
         hours = (motion.towed.time - now) / 3600.0
         motion.follow(replace(tow.inputs, knots=(), hours=hours), np.zeros(0), now)
         # Channels without a reading in this stretch take the plain mean; nothing is compared.
-        weights = np.full((len(OBSERVABLES), tow.steps + 1), 1.0 / (tow.steps + 1))
+        step_s, of_tow = tow.steps_of(place)
+        weights = np.full((len(OBSERVABLES), of_tow.shape[1]), 1.0 / of_tow.shape[1])
         noise = np.full(len(OBSERVABLES), np.nan)
-        columns = zip(tow.channels, tow.weights[place], tow.noise[place], strict=True)
+        columns = zip(tow.channels, of_tow, tow.noise[place], strict=True)
         for name, own, scatter in columns:
             if np.isfinite(own).all() and own.sum() > 0.5:
                 weights[OBSERVABLES.index(name)] = own
                 noise[OBSERVABLES.index(name)] = scatter
 
-        seen = motion.advance_to(now + tow.stretch_s, tow.step_s)
+        seen = motion.advance_to(now + tow.stretch_s, step_s)
         if motion.fallen:
             return 'a board of the model falls over'
         if motion.surfaced:
