@@ -13,12 +13,11 @@ from trawl_ros.estimation.from_gear import NET_STD, board_prior
 from trawl_ros.estimation.motion.fit import fit_motion, fit_steady
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.holdout import hold_out_states
-from trawl_ros.estimation.motion.nuisances import layout_of
+from trawl_ros.estimation.motion.nuisances import layout_of, place_at
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.motion.part_statistics import part_statistics
 from trawl_ros.estimation.motion.parts import parts_of
 from trawl_ros.estimation.motion.series import TowReadings, tow_readings
-from trawl_ros.estimation.motion.start import starting_point
 from trawl_ros.estimation.motion.stretches import FEWEST, StretchOptions, moving_tow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
@@ -122,13 +121,10 @@ def fit_tows(
         MotionOptions(),
         towed_gear(gear, net=net),
     )
-    layouts = [layout_of(tow, towed, options.model) for tow in tows]
     start = None
     if estimate is not None:
-        start = [
-            starting_point(estimate, prior, tow, layout, of_tow)
-            for tow, layout, of_tow in zip(tows, layouts, numbers, strict=True)
-        ]
+        layouts = [layout_of(tow, towed, options.model) for tow in tows]
+        start = place_at(estimate.values, prior, layouts)
     done = 0.0
 
     def show(iteration: int, tow: int, stretch: int) -> None:

@@ -6,12 +6,14 @@ slowest motions with which a part of it may begin, errors of its inputs, those t
 at knots along the way, and calibration errors of its sensors.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.estimation.fit.error_terms import GROUPS, MODEL_ANGLE, MODEL_FRACTION, group_of
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, channel_errors
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
@@ -167,6 +169,16 @@ def point_of(
         drifts=np.concatenate((np.zeros(0), *drifts)),
         net=layout.net(z),
     )
+
+
+def place_at(
+    coefficients: FloatArray, prior: ParameterVector, layouts: Sequence[TowLayout]
+) -> list[FloatArray]:
+    """Parameters (p,) of each tow, in prior std, at coefficients of the boards; others are zero."""
+    places = [np.zeros(len(layout)) for layout in layouts]
+    for z in places:
+        z[: len(prior)] = prior.departure(coefficients)
+    return places
 
 
 def linear_part(layout: TowLayout) -> FloatArray:

@@ -18,7 +18,7 @@ from trawl_ros.estimation.least_squares.information import own_values
 from trawl_ros.estimation.motion.fit import COOLER, NEAR
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.growing import GrowingLinearisation
-from trawl_ros.estimation.motion.nuisances import layout_of
+from trawl_ros.estimation.motion.nuisances import layout_of, place_at
 from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.estimation.motion.search import (
     DAMPING,
@@ -32,7 +32,6 @@ from trawl_ros.estimation.motion.search import (
     without,
 )
 from trawl_ros.estimation.motion.sizes import LinearData
-from trawl_ros.estimation.motion.start import starting_point
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
@@ -211,11 +210,7 @@ class MotionTracker:
     def _start(self, search: MotionSearch, windows: Estimate | None) -> Place:
         if windows is None:
             return search.here
-        numbers = sorted({bias.tow for bias in windows.tow_biases})
-        return [
-            starting_point(windows, self._prior, tow, layout, numbers)
-            for tow, layout in zip(search.tows, search.layouts, strict=True)
-        ]
+        return place_at(windows.values, self._prior, search.layouts)
 
     def _compare(self, search: MotionSearch, tried: GrowingLinearisation) -> None:
         """Take a linearisation for that in use if its cost is lower."""
