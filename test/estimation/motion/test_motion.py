@@ -220,6 +220,21 @@ def test_a_steady_part_goes_on_where_the_motion_before_it_ended(coarse):
     assert np.linalg.norm((chain.by_coefficients - moving.by_coefficients)[36:]) < 0.05 * size
 
 
+def test_what_is_left_of_slow_motions_is_carried_through_a_steady_part(coarse):
+    """Also of one that is not alike on both sides: the port warp is 2 m longer."""
+    tow = course_tow(860.0)
+    values = tow.inputs.values + [2.0, 0.0, 0.0]
+    tow = replace(tow, inputs=replace(tow.inputs, values=values))
+    held_s = np.zeros(len(tow))
+    held_s[36:39] = 240.0
+    point = TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, NO_DRIFTS)
+    moving = linearise_tow(TowedGear(coarse), tow, point)
+    chain = linearise_tow(TowedGear(coarse), replace(tow, held_s=held_s), point)
+    assert np.all(np.abs(chain.values - moving.values) < 2.0 * tow.noise)
+    size = np.linalg.norm(moving.by_coefficients[36:])
+    assert np.linalg.norm((chain.by_coefficients - moving.by_coefficients)[36:]) < 0.05 * size
+
+
 def test_held_inputs_are_followed_in_longer_steps(coarse):
     tow = replace(course_tow(680.0), step_s=2.0)
     quiet = [stretch for stretch in range(len(tow)) if tow.is_quiet(stretch)]

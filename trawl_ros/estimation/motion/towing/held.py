@@ -63,6 +63,21 @@ class HeldGear:
         return amplitudes.through(np.diag(np.exp(self.rates * seconds)))
 
 
+def projection(shapes: FloatArray, channels: Sequence[str]) -> FloatArray:
+    """Amplitudes (m, k) of motions by departures of channels (k,), in least squares.
+
+    Parameters
+    ----------
+    shapes : (k, m) array
+        Derivatives of the channels by the amplitudes.
+    channels
+        Their names; each counts by the noise of a reading.
+    """
+    noise = np.array([CHANNELS[name].noise for name in channels])
+    found: FloatArray = np.linalg.pinv(shapes / noise[:, None]) / noise
+    return found
+
+
 def hold_gear(
     gear: TowedGear,
     point: TowedPoint,
@@ -98,9 +113,8 @@ def hold_gear(
     shapes, own = seen.slopes[:, parameters.of_motions], parameters.of_motions
     vectors = towed.slopes.places[:, own]
     rates = np.sum(vectors * towed.slopes.velocities[:, own], axis=0) / np.sum(vectors**2, axis=0)
-    noise = np.array([CHANNELS[name].noise for name in channels])[:, None]
     return HeldGear(
         mean.values, towed.first, Linearisation(seen.values, gear.parts(seen.slopes, parameters)),
         seen.slopes[:, parameters.of_inputs], shapes, rates,
-        np.linalg.pinv(shapes / noise) / noise.T,
+        projection(shapes, channels),
     )  # fmt: skip

@@ -14,7 +14,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.estimation.motion.towing.held import HeldGear, hold_gear
+from trawl_ros.estimation.motion.towing.held import HeldGear, hold_gear, projection
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, CorrectedInputs, MeanInputs
 from trawl_ros.estimation.motion.towing.linearisation import (
     SLOW_MOTIONS,
@@ -77,7 +77,7 @@ class TowLineariser:
         self._moving: MovingGear | None = None
         self._amplitudes: Linearisation | None = None
         self._since = 0.0
-        self._failed = ''
+        self._failed, self._lost_part = '', -1
         self._means: list[Linearisation | None] = []
         self._left_out: list[LeftOut] = []
 
@@ -148,6 +148,8 @@ class TowLineariser:
             self._fail(BY_SENSOR)
         try:
             if tow.steady[stretch]:
+                if tow.steady_part[stretch] == self._lost_part:
+                    raise NotPredicted(self._failed)
                 return self._in_steady(tow, stretch)
             if tow.steady_only:
                 self._held = self._amplitudes = None
@@ -157,6 +159,9 @@ class TowLineariser:
                 raise NotPredicted(self._failed)
             return self._in_motion(tow, stretch)
         except (NoSteadyState, StepFailed) as error:
+            if tow.steady[stretch]:
+                # It takes long to find that there is no equilibrium, and none is near.
+                self._lost_part = int(tow.steady_part[stretch])
             self._fail(f'the model cannot be towed: {error}')
 
     def _fail(self, why: str) -> NoReturn:
@@ -183,7 +188,7 @@ class TowLineariser:
         # The net's depth follows the speed in many minutes, and the log scatters more than the
         # ship's speed changes while it is held.
         mean = self._mean_inputs(tow, end - tow.held_s[stretch], end)
-        held = self._hold(mean)
+        last, held = self._held, self._hold(mean)
         if self._moving is not None:
             departure = self._parts(self._moving, self._moving.seen).plus(held.at(mean), -1.0)
             self._amplitudes = departure.through(held.projection)
@@ -191,6 +196,8 @@ class TowLineariser:
         elif self._amplitudes is None:
             self._amplitudes = unknown_amplitudes(int(tow.steady_part[stretch]))
             self._since = begin
+        elif last is not None and last is not held:
+            self._carry(last, begin, held.projection)
         self._failed = ''
         left = held.decayed(self._amplitudes, begin + 0.5 * tow.stretch_s - self._since)
         return held.at(mean).plus(left.through(held.shapes))
@@ -223,8 +230,6 @@ class TowLineariser:
             since = begin - tow.held_s[round(begin / tow.stretch_s) - 1]
             course.first = self._mean_inputs(tow, since, begin).values
             start = self._held.equilibrium
-            if self._amplitudes is not None:
-                self._amplitudes = self._held.decayed(self._amplitudes, begin - self._since)
 
         def observed(towed: DifferentiatedTow) -> MotionPrediction:
             return gear.observed(towed, course(towed.time).situation, self.channels)
@@ -233,7 +238,20 @@ class TowLineariser:
             gear.model_at(point), gear.parameters(inputs.names, motions=SLOW_MOTIONS), course,
             gear.with_added_mass(point.added_mass), start,
         )  # fmt: skip
-        return MovingGear(towed, course, observed)
+        moving = MovingGear(towed, course, observed)
+        if self._held is not None:
+            shapes = moving.seen.slopes[:, towed.parameters.of_motions]
+            self._carry(self._held, begin, projection(shapes, self.channels))
+        return moving
+
+    def _carry(self, held: HeldGear, time: float, onto: FloatArray) -> None:
+        """Carry the amplitudes of an equilibrium's motions to a time, as those of another's.
+
+        The shapes of a motion that is alike on both sides, but for its sign, have any sign.
+        """
+        assert self._amplitudes is not None
+        left = held.decayed(self._amplitudes, time - self._since)
+        self._amplitudes, self._since = left.through(onto @ held.shapes), time
 
     def _parts(self, moving: MovingGear, found: MotionPrediction) -> Linearisation:
         """Prediction with what is left of the slowest motions from before."""
