@@ -136,7 +136,7 @@ def fit_tows(
         on_progress(WorkProgress(STAGE, done, None, 's', detail))
 
     steady = fit_steady(towed, tows, prior, options, start, show)
-    if steady is not None and steady.converged:
+    if steady is not None and steady.converged and steady.readings:
         start = list(steady.parameters)
     fit = fit_motion(towed, tows, prior, options, start, show)
     if not fit.readings:
