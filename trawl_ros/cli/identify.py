@@ -21,6 +21,7 @@ from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.display_units import METRIC, DisplayUnits
 from trawl_ros.estimation.report.motion import motion_lines, motion_table
 from trawl_ros.estimation.report.report import Report
+from trawl_ros.estimation.report.sensors import sensor_table
 from trawl_ros.estimation.report.table import (
     channel_table,
     closing_lines,
@@ -97,6 +98,8 @@ def print_report(report: Report, units: DisplayUnits = METRIC) -> None:
     console = Console(highlight=False, soft_wrap=True)
     width = None if console.is_terminal else TABLE_COLUMNS
     console.print(opening_line(report), style='bold')
+    if report.sensors:
+        console.print(sensor_table(report.sensors), width=width)
     if not report.paired:
         console.print(coefficient_table(report), width=width)
     if report.windows:

@@ -1,6 +1,7 @@
 """Learning from all of the tow in bags, from what their steady windows tell on."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from trawl_ros.bags.samples import SampleStream
@@ -9,14 +10,14 @@ from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.estimation.fit.objective import stack
 from trawl_ros.estimation.from_gear import NET_STD, board_prior
-from trawl_ros.estimation.motion.fit import fit_motion
+from trawl_ros.estimation.motion.fit import fit_motion, fit_steady
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.holdout import hold_out_states
-from trawl_ros.estimation.motion.nuisances import layout_of
+from trawl_ros.estimation.motion.nuisances import layout_of, place_at
 from trawl_ros.estimation.motion.outcome import MotionOutcome
+from trawl_ros.estimation.motion.part_statistics import part_statistics
 from trawl_ros.estimation.motion.parts import parts_of
 from trawl_ros.estimation.motion.series import TowReadings, tow_readings
-from trawl_ros.estimation.motion.start import starting_point
 from trawl_ros.estimation.motion.stretches import FEWEST, StretchOptions, moving_tow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
@@ -120,13 +121,10 @@ def fit_tows(
         MotionOptions(),
         towed_gear(gear, net=net),
     )
-    layouts = [layout_of(tow, towed, options.model) for tow in tows]
     start = None
     if estimate is not None:
-        start = [
-            starting_point(estimate, prior, tow, layout, of_tow)
-            for tow, layout, of_tow in zip(tows, layouts, numbers, strict=True)
-        ]
+        layouts = [layout_of(tow, towed, options.model) for tow in tows]
+        start = place_at(estimate.values, prior, layouts)
     done = 0.0
 
     def show(iteration: int, tow: int, stretch: int) -> None:
@@ -137,6 +135,9 @@ def fit_tows(
         detail = f'step {iteration}, tow {tow + 1}{of}, minute {minute:.0f}'
         on_progress(WorkProgress(STAGE, done, None, 's', detail))
 
+    steady = fit_steady(towed, tows, prior, options, start, show)
+    if steady is not None and steady.converged and steady.readings:
+        start = list(steady.parameters)
     fit = fit_motion(towed, tows, prior, options, start, show)
     if not fit.readings:
         raise TrawlError('the model cannot be towed along any stretch of the tows')
@@ -176,7 +177,7 @@ def moving_tows(
         samples = (sample for _, sample in SampleStream([Path(recording.name)], namespace))
         try:
             read = tow_readings(samples, depth, recording.name)
-            for part in moving_parts(read, recording.name):
+            for part in moving_parts(read, recording.name, statistics=True):
                 tows.append(part)
                 numbers.append(tuple(range(first, first + own)))
         except TrawlError as error:
@@ -185,8 +186,15 @@ def moving_tows(
     return tows, numbers, refused
 
 
-def moving_parts(read: TowReadings, name: str) -> Iterator[MovingTow]:
+def moving_parts(read: TowReadings, name: str, *, statistics: bool = False) -> Iterator[MovingTow]:
     """Divide a tow into parts along which the model can be towed, and these into stretches.
+
+    Parameters
+    ----------
+    read, name
+        Its readings, and its name for people.
+    statistics
+        True to compute the statistics of its steady and moving parts.
 
     Raises
     ------
@@ -202,4 +210,5 @@ def moving_parts(read: TowReadings, name: str) -> Iterator[MovingTow]:
         )
     for place, part in enumerate(parts, start=1):
         several = f', part {place}' if len(parts) > 1 else ''
-        yield moving_tow(part, name + several, STRETCHES)
+        tow = moving_tow(part, name + several, STRETCHES)
+        yield replace(tow, statistics=part_statistics(part, tow)) if statistics else tow

@@ -181,7 +181,8 @@ class LiveMotion:
         tows: list[MovingTow] = []
         refused: list[str] = []
         try:
-            tows += moving_parts(self._recorder.readings('the tow', until_ns), 'the tow')
+            read = self._recorder.readings('the tow', until_ns)
+            tows += moving_parts(read, 'the tow', statistics=until_ns is None)
         except TrawlError as reason:
             refused.append(str(reason))
         return tows, refused

@@ -16,7 +16,6 @@ from trawl_ros.diagnosis.onset.watch import CLOSE, LEARNS, REST, Watch, WatchSet
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
-from trawl_ros.estimation.motion.towing.towed_stretch import NotTowed
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.water import build_water
@@ -142,10 +141,10 @@ def test_boards_with_which_nothing_can_be_compared_for_minutes_are_refused_but_n
     begun = next(number for number, last in enumerate(stretches) if last.tow is not None) + 1
     seen = [judged.advance(last) for last in stretches[: begun + REST + 1]]
     assert not seen[-1].why_not
-    surfaced = NotTowed('the gear of the model breaks the surface')
-    monkeypatch.setattr(towing, 'tow_along', lambda *_: surfaced)
+    surfaced = 'the gear of the model breaks the surface'
+    monkeypatch.setattr(towing.ModelTow, '_towed', lambda *_: surfaced)
     for last in stretches[begun + REST + 1 :]:
-        assert judged.advance(last).why_not == surfaced.why
+        assert judged.advance(last).why_not == surfaced
         assert not judged.refused
     told = []
     for last in stretches[: begun + REST + 1]:

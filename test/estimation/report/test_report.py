@@ -17,6 +17,7 @@ from trawl_ros.estimation.report.page import report_page, write_report
 from trawl_ros.estimation.report.report import report
 from trawl_ros.estimation.report.residuals import residuals, solve_windows
 from trawl_ros.estimation.report.result import result
+from trawl_ros.estimation.report.sensors import compare_sensors
 from trawl_ros.estimation.report.spectrum import spectrum
 from trawl_ros.estimation.report.table import (
     channel_table,
@@ -63,7 +64,7 @@ def test_the_result_has_what_was_promised(sea, tows):
         'undetermined', 'converged', 'reason', 'active_bounds', 'covariance', 'singular_values',
         'weak_combinations', 'misfit', 'noise_scales', 'net', 'prior_used', 'held_out_by',
         'accepted', 'tows', 'residuals', 'innovations', 'laws', 'rejected_last',
-        'noise_densities',
+        'noise_densities', 'sensors',
     } == set(found)  # fmt: skip
     assert set(found['objective']) == {'start', 'end', 'truth'}
     assert found['objective']['end'] < found['objective']['start'] / 3.0
@@ -139,6 +140,35 @@ def test_residuals_are_measured_less_modelled(sea, model, prior, windows):
     assert opening.test_ratio == pytest.approx(np.mean((3.0 / (3.0 * opening.stds)) ** 2))
     assert spread.mean == pytest.approx(0.0, abs=1e-9)
     assert spread.whiteness is None
+
+
+def test_sensors_are_compared_in_units_of_the_field(sea, model, prior, windows):
+    estimator = fitted(sea, model, prior, windows).estimator
+    start, end = (solve_windows(estimator, at) for at in (prior.start, sea.TRUTH))
+    found = {
+        row.channel: row for row in compare_sensors({'start': [None, *start[1:]], 'refitted': end})
+    }
+    tension, depth = found['port_tension'], found['net_depth']
+    assert (tension.unit, depth.unit) == ('t', 'm')
+    assert {row.windows for row in found.values()} == {len(windows) - 1}
+    means = np.array([window.means['port_tension'] for window in windows[1:]])
+    assert tension.measured == pytest.approx(means.mean() / 9806.65)
+    solved = np.array([one.solved[one.channels.index('net_depth')] for one in start[1:]])
+    read = np.array([window.means['net_depth'] for window in windows[1:]])
+    assert depth.predicted['start'].mean == pytest.approx(solved.mean())
+    assert depth.predicted['start'].error == pytest.approx(np.abs(read - solved).mean())
+    assert depth.predicted['refitted'].error < depth.predicted['start'].error
+    assert compare_sensors({'start': [None], 'refitted': [None]}) == ()
+
+
+def test_the_page_has_its_parts_in_the_order_of_their_weight(tows):
+    page = report_page(report(tows), ())
+    order = [
+        'class="verdict', 'Measured and predicted', 'The coefficients', 'cannot be determined',
+        '<details>', 'Residuals by channel', '</details>',
+    ]  # fmt: skip
+    places = [page.index(words) for words in order]
+    assert places == sorted(places)
 
 
 def test_a_state_without_steady_state_is_tried_once(sea, model, windows):

@@ -290,29 +290,3 @@ def test_memory_does_not_grow_with_the_tow(model: GearModel) -> None:
     finally:
         tracemalloc.stop()
     assert held[1] < 1.01 * held[0]
-
-
-def test_derivatives_that_are_held_go_with_the_blocks_and_forget_with_them(
-    model: GearModel,
-) -> None:
-    tow = DifferentiatedTow(model, PARAMETERS, hauling)
-    for _ in range(3):
-        tow.advance(3.0)
-    slopes, blocks = tow.derivatives
-    tow.advance(3.0)
-    held = slopes.places.copy()
-    tow.hold(slopes, blocks)
-    tow.advance(3.0)
-    np.testing.assert_array_equal(tow.slopes.places, held)
-    since = (tow.course.slopes.blocks - blocks).mean(axis=1).T
-    speed = PARAMETERS.names.index('speed drift')
-    assert np.abs(since[0, speed]) > 0.0
-    forgotten = PARAMETERS.of_inputs.start
-    tow.forget(slice(forgotten, forgotten + 1))
-    tow.release()
-    gone = tow.slopes.places - held
-    gone[:, forgotten] = tow.slopes.places[:, forgotten]
-    since[:, forgotten] = 0.0
-    np.testing.assert_allclose(gone[:3], since, atol=1e-12)
-    np.testing.assert_allclose(gone[-6:-3], since, atol=1e-12)
-    assert np.all(gone[-3:] == 0.0)

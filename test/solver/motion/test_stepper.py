@@ -55,20 +55,6 @@ def test_a_tow_is_led_in_shorter_steps_where_winches_start(
     assert failed
 
 
-def test_tows_that_share_what_is_halved_take_the_same_steps(
-    model: GearModel, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    halved: set[tuple[float, float]] = set()
-    taken, failed = steps_of(DifferentiatedTow(model, NONE, hauling, halved=halved), monkeypatch)
-    assert sorted(h for _, h in halved) == sorted(failed)
-    with monkeypatch.context() as patched:
-        # None of them would be too long for a gear that is towed elsewhere.
-        patched.setattr(module, 'is_too_long', lambda motion, solved: False)
-        again, none = steps_of(DifferentiatedTow(model, NONE, hauling, halved=halved), patched)
-    assert again == taken
-    assert not none
-
-
 def steps_of(
     tow: DifferentiatedTow, monkeypatch: pytest.MonkeyPatch
 ) -> tuple[list[float], list[float]]:

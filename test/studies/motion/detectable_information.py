@@ -18,8 +18,9 @@ from trawl_ros.diagnosis.onset.towing import WatchedGear
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.estimation.fit.error_terms import GROUPS, LONGER, USUAL_LENGTH
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.information import joined
 from trawl_ros.estimation.motion.fit_records import MotionOptions
-from trawl_ros.estimation.motion.information import LinearGroup, joined
+from trawl_ros.estimation.motion.information import LinearGroup
 from trawl_ros.estimation.motion.nuisances import TowLayout, columns, layout_of
 from trawl_ros.estimation.motion.processes import group_rows
 from trawl_ros.estimation.motion.sizes import LinearData

@@ -9,11 +9,11 @@ from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.diagnosis.mimics.drift import Drift, drifts
 from trawl_ros.effects.base.effect import WIDE, Effect, Parameter, Readings, Situation
 from trawl_ros.effects.registry import catalogue
-from trawl_ros.estimation.motion.stretches import NOT_USED
+from trawl_ros.estimation.motion.stretches import STEADY_ONLY
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.channels import MEASURED
 
-WATCHED = tuple(name for name in MEASURED if name not in NOT_USED)
+WATCHED = tuple(name for name in MEASURED if name not in STEADY_ONLY)
 """Channels that are watched."""
 
 GROWING = 'per h'
@@ -113,7 +113,7 @@ def candidate_table(effects: Mapping[str, Effect] | None = None) -> CandidateTab
     """
     known = catalogue() if effects is None else effects
     whole = (effect for effect in known.values() if effect.parameters)
-    patterns = [drift for drift in drifts() if not set(drift.channels) & set(NOT_USED)]
+    patterns = [drift for drift in drifts() if not set(drift.channels) & set(STEADY_ONLY)]
     every: Sequence[Effect] = (*whole, *patterns)
     return CandidateTable(tuple(every), tuple(_candidates(every)))
 

@@ -18,7 +18,7 @@ from trawl_ros.diagnosis.onset.judging import finding
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
 from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
 from trawl_ros.diagnosis.onset.stretches import LIVE, LastStretch, StretchCutter
-from trawl_ros.diagnosis.onset.towing import WatchedGear
+from trawl_ros.diagnosis.onset.towing import SETTLING_S, WatchedGear
 from trawl_ros.diagnosis.onset.watch import (
     CLOSE,
     REST,
@@ -31,7 +31,6 @@ from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.stretches import FEWEST
-from trawl_ros.estimation.motion.towing.records import SETTLING_S
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.water import build_water

@@ -14,28 +14,26 @@ from trawl_ros.effects.base.effect import Effect, Situation, sense
 from trawl_ros.effects.effect_set import EffectSet
 from trawl_ros.estimation.fit.error_terms import MODEL_ANGLE, MODEL_FRACTION
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, without_errors
-from trawl_ros.estimation.motion.towing.records import SETTLING_S, MovingTow
-from trawl_ros.estimation.motion.towing.towed_stretch import (
-    AGAIN_S,
-    BY_SENSOR,
-    NotTowed,
-    refused_if_unstable,
-    tow_along,
-)
-from trawl_ros.estimation.motion.towing.under_way import (
-    AFTER_A_FALL,
-    InputsUnderWay,
-    MotionUnderWay,
-)
+from trawl_ros.estimation.motion.towing.lineariser import BY_SENSOR, UNSTABLE
+from trawl_ros.estimation.motion.towing.moving import MovingCourse, MovingGear
+from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.effect_sensitivity import shown_values
 from trawl_ros.solver.motion.course import InputPoint, by_values
 from trawl_ros.solver.motion.parameters import MotionParameters
-from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
+
+SETTLING_S = 300.0
+"""Time (s) that a tow of the model is given before its stretches are compared: what the gear did
+before is not known."""
+
+AGAIN_S = 120.0
+"""Time (s) after which a tow of the model that has ended begins again."""
+
+AFTER_A_FALL = 'boards had fallen shortly before'
 
 ROWS = [OBSERVABLES.index(name) for name in WATCHED]
 
@@ -159,7 +157,7 @@ class ModelTow:
     def __init__(self, gear: WatchedGear, coefficients: FloatArray) -> None:
         self._gear = gear
         self._parameters = gear.parameters
-        self._motion: MotionUnderWay | None = None
+        self._motion: MovingGear | None = None
         self._next = -1
         self.stopped, self._again = -1, 0
         self._coefficients = coefficients
@@ -204,49 +202,60 @@ class ModelTow:
                 self._stop(last)
                 return 'a board of the model falls over'
         self._next = last.number + 1
-        found = self._towed(self._motion, last.tow, last.place)
-        if not isinstance(found, NotTowed):
-            return found
-        if found.ends:
+        try:
+            found = self._towed(self._motion, last.tow, last.place)
+        except StepFailed as reason:
             self._stop(last)
-        return found.why
+            return f'the model cannot be towed: {reason}'
+        if self._motion.fallen or (isinstance(found, str) and found == BY_SENSOR):
+            self._stop(last)
+        return found
 
     def _stop(self, last: LastStretch) -> None:
         self._motion, self.stopped = None, last.number
         self._again = last.number + round(AGAIN_S / LIVE.stretch_s)
 
-    def _begun(self, last: LastStretch, tow: MovingTow) -> MotionUnderWay | None:
+    def _begun(self, last: LastStretch, tow: MovingTow) -> MovingGear | None:
         """Motion at the beginning of a stretch; None where a board falls on the way there."""
-        course = InputsUnderWay(without_errors(replace(tow.inputs, knots=())))
+        course = MovingCourse(without_errors(replace(tow.inputs, knots=())))
         model = self._gear.model.with_coefficients(self._coefficients)
         towed = DifferentiatedTow(model, self._parameters, course, self._gear.acting)
         port, starboard, speed = map(float, course(0.0).inputs)
         self._began = (port, starboard, speed)
-        motion = MotionUnderWay(towed, course, DifferentiatedTow.observed, counts_from=0.0)
-        way = motion.towed_on(last.place * tow.stretch_s, tow.step_s)
-        return None if any(motion.fallen for _ in way) else motion
+        motion = MovingGear(towed, course, DifferentiatedTow.observed)
+        motion.advance_to(last.place * tow.stretch_s, tow.step_s)
+        return None if motion.fallen else motion
 
-    def _towed(self, motion: MotionUnderWay, tow: MovingTow, place: int) -> TowedStretch | NotTowed:
+    def _towed(self, motion: MovingGear, tow: MovingTow, place: int) -> TowedStretch | str:
+        """Readings of the model in a stretch, or the reason why it has none."""
+        if place in tow.fallen:
+            return BY_SENSOR
         now = place * tow.stretch_s
         # Time counts from where the model began to be towed, for what grows with it.
         hours = (motion.towed.time - now) / 3600.0
         motion.follow(replace(tow.inputs, knots=(), hours=hours), np.zeros(0), now)
         # Channels without a reading in this stretch take the plain mean; nothing is compared.
-        weights = np.full((len(OBSERVABLES), tow.steps + 1), 1.0 / (tow.steps + 1))
+        step_s, of_tow = tow.steps_of(place)
+        weights = np.full((len(OBSERVABLES), of_tow.shape[1]), 1.0 / of_tow.shape[1])
         noise = np.full(len(OBSERVABLES), np.nan)
-        columns = zip(tow.channels, tow.weights[place], tow.noise[place], strict=True)
+        columns = zip(tow.channels, of_tow, tow.noise[place], strict=True)
         for name, own, scatter in columns:
             if np.isfinite(own).all() and own.sum() > 0.5:
                 weights[OBSERVABLES.index(name)] = own
                 noise[OBSERVABLES.index(name)] = scatter
 
-        def averaged(seen: list[MotionPrediction]) -> TowedStretch | NotTowed:
-            values = np.einsum('sn,ns->n', [one.values for one in seen], weights)
-            slopes = np.einsum('snm,ns->nm', [one.slopes for one in seen], weights)
-            refused = refused_if_unstable(slopes[:, self._parameters.of_coefficients], noise)
-            return refused or self._stretch(motion.course(motion.towed.time), values, slopes)
-
-        return tow_along(motion, tow, place, averaged)
+        seen = motion.advance_to(now + tow.stretch_s, step_s)
+        if motion.fallen:
+            return 'a board of the model falls over'
+        if motion.surfaced:
+            return 'the gear of the model breaks the surface'
+        mean = motion.average(seen, weights, now)
+        unstable = (
+            np.abs(mean.slopes[:, self._parameters.of_coefficients]) > UNSTABLE * noise[:, None]
+        )
+        if np.any(unstable):
+            return 'the motion of the model is unstable'
+        return self._stretch(motion.course(motion.towed.time), mean.values, mean.slopes)
 
     def _stretch(self, point: InputPoint, values: FloatArray, slopes: FloatArray) -> TowedStretch:
         own = self._parameters

@@ -5,10 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.bounded_step import shared_std
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.nuisances import layout_of
-from trawl_ros.estimation.motion.search import MotionSearch, OnTow, count, towed_flags
-from trawl_ros.estimation.motion.steps import Place, misfit, shared_std, step
+from trawl_ros.estimation.motion.search import MotionSearch, OnTow
+from trawl_ros.estimation.motion.steps import Place, misfit, step
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 
@@ -23,10 +24,6 @@ FINDINGS = 3
 """Towings after which weights and sizes of the errors are found, before they stay; and so do
 stretches that are lost."""
 
-LEAST = 1.0 / 3.0
-"""Part of the stretches that a fit must be able to tow along where it begins for want of another
-beginning from which it comes to rest."""
-
 
 def fit_motion(
     gear: TowedGear,
@@ -37,9 +34,6 @@ def fit_motion(
     on_stretch: OnTow = lambda iteration, tow, stretch: None,
 ) -> MotionFit:
     """Fit tows in motion.
-
-    It begins nearer to what is known before where boards of the model fall with the start, and with
-    the start itself where it does not come to rest from there.
 
     Parameters
     ----------
@@ -58,17 +52,26 @@ def fit_motion(
     here = [np.zeros(len(layout)) for layout in layouts] if start is None else list(start)
     search = MotionSearch(gear, tows, layouts, prior, options, on_stretch, here)
     search.begin()
-    fit = _rested(search)
-    if fit.converged or not search.began_nearer:
-        return fit
-    # Boards that all but fall are learned from what of the tow their model is towed along, rather
-    # than along a way there on which it falls elsewhere.
-    again = MotionSearch(gear, tows, layouts, prior, options, on_stretch, here)
-    again.begin(nearer=False)
-    if count(towed_flags(again.linear)) < LEAST * sum(len(tow) for tow in tows):
-        return fit
-    other = _rested(again)
-    return other if other.converged else fit
+    return _rested(search)
+
+
+def fit_steady(
+    gear: TowedGear,
+    tows: Sequence[MovingTow],
+    prior: ParameterVector,
+    options: MotionOptions,
+    start: Place | None = None,
+    on_stretch: OnTow = lambda iteration, tow, stretch: None,
+) -> MotionFit | None:
+    """Fit the steady parts of tows alone: by equilibria, with nothing integrated in time.
+
+    Parameters are those of `fit_motion`, and so is what it returns; None where no tow has a steady
+    part.
+    """
+    if not any(tow.steady.any() for tow in tows):
+        return None
+    steady = [tow.only_steady() for tow in tows]
+    return fit_motion(gear, steady, prior, options, start, on_stretch)
 
 
 def _rested(search: MotionSearch) -> MotionFit:
@@ -86,13 +89,11 @@ def _rested(search: MotionSearch) -> MotionFit:
             found += 1
             sizes = search.find(sizes)
             data = search.data(search.linear, search.here)
-        if temper > 1.0:
-            # Far from rest boards may fall where they will not, with hundreds of halved steps.
-            search.halved = ()
         now = sizes.tempered(temper)
         target = step(data, search.here, search.prior, now, options.largest_step)
-        std = shared_std(data, now)[:12]
-        size = float(np.max(np.abs(target[0][:12] - search.here[0][:12]) / std))
+        own = slice(0, len(search.prior))
+        std = shared_std(data.information(now), data.precisions(now.log), data.shared)[own]
+        size = float(np.max(np.abs(target[0][own] - search.here[0][own]) / std))
         if temper == 1.0 and size < options.tolerance:
             converged = True
             reason = (

@@ -8,7 +8,6 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.nuisances import TowLayout, point_of
-from trawl_ros.estimation.motion.towing.halved import TowHalved
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.lineariser import TowLineariser
@@ -48,13 +47,6 @@ class GrowingLinearisation:
         Tows as they are.
     place
         Parameters (p,) of each, in prior std, at which they are linearised.
-    halved
-        Steps that are halved, by the stamps of the tows' beginnings; those that fail are added.
-
-    Attributes
-    ----------
-    halved
-        Steps that were halved so far.
     """
 
     def __init__(
@@ -64,9 +56,8 @@ class GrowingLinearisation:
         tows: Sequence[MovingTow],
         layouts: Sequence[TowLayout],
         place: Sequence[FloatArray],
-        halved: dict[int, TowHalved],
     ) -> None:
-        self._gear, self.halved = gear, halved
+        self._gear = gear
         self._shared = place[0][: layouts[0].shared].copy()
         self._inputs: dict[int, InputsPlace] = {}
         for tow, layout, z in zip(tows, layouts, place, strict=True):
@@ -103,8 +94,7 @@ class GrowingLinearisation:
     def _begin(self, tow: MovingTow) -> TowLineariser:
         inputs = self._of(tow)
         point = replace(self._point, errors=inputs.errors, drifts=inputs.along(tow))
-        halved = self.halved.setdefault(tow.start_ns, {})
-        begun = TowLineariser(self._gear, tow.channels, point, halved=halved)
+        begun = TowLineariser(self._gear, tow.channels, point)
         self._towed[tow.start_ns] = begun
         return begun
 

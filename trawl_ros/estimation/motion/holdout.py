@@ -78,7 +78,7 @@ def hold_out_states(
         data = restricted(fit.data, keep)
         there = step(data, fit.parameters, prior, fit.sizes, options.largest_step)
         rows = [i for i, window in enumerate(windows) if window.state in fold]
-        values = prior.start + prior.std * there[0][:12]
+        values = prior.start + prior.std * there[0][: len(prior)]
         net = fit.layouts[0].net(there[0]) if fit.net else None
         left_out = [windows[i] for i in rows]
         inputs = np.array([_inputs(fit, there, window, tow_of) for window in left_out])

@@ -1,17 +1,19 @@
 """Columns of a linearised tow by all its parameters, each in units of its prior std.
 
 Parameters that all tows share come first: coefficients, added mass, the net's factors where these
-are estimated along, and the constant part of the model's error. Those of one tow follow: slow
-motions at its beginning, errors of its inputs, those that stay and those at knots along the way,
-and calibration errors of its sensors.
+are estimated along, and the constant part of the model's error. Those of one tow follow: the
+slowest motions with which a part of it may begin, errors of its inputs, those that stay and those
+at knots along the way, and calibration errors of its sensors.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.estimation.fit.error_terms import GROUPS, MODEL_ANGLE, MODEL_FRACTION, group_of
+from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, channel_errors
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
@@ -20,8 +22,9 @@ from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.motion.parameters import NET
 
-MOTION_STD_M = 3.0
-"""Prior std (m) of the slow motions with which a tow begins; assumed."""
+START_STD_M = 10.0
+"""Prior std (m) of the slowest motions with which a part of a tow begins; assumed. Seven minutes
+after 40 m of warp and 0.3 m/s the slowest was still 15 m."""
 
 ADDED_MASS_STD = 0.5
 """Prior std of the boards' added mass, as a part of the cylinder of water around them: that of
@@ -34,8 +37,8 @@ class TowLayout:
 
     Attributes
     ----------
-    motions
-        Number of slow motions.
+    starts
+        Number of slow motions with which its parts may begin.
     knots
         Channel and number of knots of each input's error along the way.
     channels
@@ -46,16 +49,26 @@ class TowLayout:
         Prior std of the factors on drag and weight of the net; 0 where these are held.
     """
 
-    motions: int
+    starts: int
     knots: tuple[tuple[str, int], ...]
     channels: tuple[str, ...]
     model: float = 1.0
     net_std: float = 0.0
 
     @property
+    def of_coefficients(self) -> Slice:
+        """Slice of the boards' coefficients."""
+        return slice(0, len(COEFFICIENTS))
+
+    @property
+    def of_added_mass(self) -> Slice:
+        """Slice of the boards' added mass."""
+        return slice(len(COEFFICIENTS), len(COEFFICIENTS) + 1)
+
+    @property
     def of_net(self) -> Slice:
         """Slice of the factors on drag and weight of the net."""
-        first = len(COEFFICIENTS) + 1
+        first = self.of_added_mass.stop
         return slice(first, first + (len(NET) if self.net_std else 0))
 
     @property
@@ -74,14 +87,14 @@ class TowLayout:
         return slice(self.of_gear, self.shared)
 
     @property
-    def of_motions(self) -> Slice:
-        """Slice of the slow motions."""
-        return slice(self.shared, self.shared + self.motions)
+    def of_starts(self) -> Slice:
+        """Slice of the slowest motions with which parts begin."""
+        return slice(self.shared, self.shared + self.starts)
 
     @property
     def of_errors(self) -> Slice:
         """Slice of the errors of the inputs."""
-        return slice(self.of_motions.stop, self.of_motions.stop + len(INPUT_ERRORS))
+        return slice(self.of_starts.stop, self.of_starts.stop + len(INPUT_ERRORS))
 
     @property
     def of_knots(self) -> Slice:
@@ -114,15 +127,15 @@ class TowLayout:
 def layout_of(tow: MovingTow, gear: TowedGear, model: float) -> TowLayout:
     """Layout of a tow of a gear."""
     knots = tuple((knots.channel, knots.number) for knots in tow.inputs.knots)
-    return TowLayout(gear.motions, knots, tow.channels, model, gear.net_std)
+    return TowLayout(tow.starts, knots, tow.channels, model, gear.net_std)
 
 
 def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> FloatArray:
     """Derivatives (n, k, p) of measured means by all parameters, in units of their prior std."""
     n, k = linear.values.shape
     total = np.zeros((n, k, len(layout)))
-    total[..., :12] = linear.by_coefficients * prior_std
-    total[..., 12:13] = linear.by_added_mass * ADDED_MASS_STD
+    total[..., layout.of_coefficients] = linear.by_coefficients * prior_std
+    total[..., layout.of_added_mass] = linear.by_added_mass * ADDED_MASS_STD
     total[..., layout.of_net] = linear.by_net * layout.net_std
     for column, group in enumerate(GROUPS, start=layout.of_model.start):
         for row, name in enumerate(layout.channels):
@@ -132,7 +145,7 @@ def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> 
                 total[:, row, column] = layout.model * (
                     MODEL_ANGLE if angle else MODEL_FRACTION * values
                 )
-    total[..., layout.of_motions] = linear.by_motions * MOTION_STD_M
+    total[..., layout.of_starts] = linear.by_starts * START_STD_M
     total[..., layout.of_errors] = linear.by_errors
     for knots, own, _ in linear.tow.inputs.knot_places:
         total[..., layout.of_knots][..., own] = linear.by_knots[..., own] @ knots.root
@@ -150,12 +163,22 @@ def point_of(
     scaled = z[layout.of_knots]
     drifts = [knots.root @ scaled[own] for knots, own, _ in tow.inputs.knot_places]
     return TowedPoint(
-        coefficients=start + prior_std * z[:12],
-        added_mass=float(ADDED_MASS_STD * z[12]),
+        coefficients=start + prior_std * z[layout.of_coefficients],
+        added_mass=float(ADDED_MASS_STD * z[layout.of_added_mass][0]),
         errors=z[layout.of_errors],
         drifts=np.concatenate((np.zeros(0), *drifts)),
         net=layout.net(z),
     )
+
+
+def place_at(
+    coefficients: FloatArray, prior: ParameterVector, layouts: Sequence[TowLayout]
+) -> list[FloatArray]:
+    """Parameters (p,) of each tow, in prior std, at coefficients of the boards; others are zero."""
+    places = [np.zeros(len(layout)) for layout in layouts]
+    for z in places:
+        z[: len(prior)] = prior.departure(coefficients)
+    return places
 
 
 def linear_part(layout: TowLayout) -> FloatArray:
@@ -163,6 +186,6 @@ def linear_part(layout: TowLayout) -> FloatArray:
     motions, calibration and the constant errors of the model.
     """
     flags = np.zeros(len(layout))
-    for part in (layout.of_model, layout.of_motions, layout.of_calibration):
+    for part in (layout.of_model, layout.of_starts, layout.of_calibration):
         flags[part] = 1.0
     return flags

@@ -29,7 +29,7 @@ SWIFT = 0.05
 """Part of its change from one stretch to the next that a mean is predicted wrong by: inputs are
 smoothed over 10 s, time steps are 3 s, and where doors fall or rise by metres in half a minute the
 predictions are not linear in what is unknown. Found on one tow of a finer plant, in which it was
-5 % where boards were hauled to the surface, and elsewhere less (docs/identification/motion.md)."""
+5 % where boards were hauled to the surface, and elsewhere less."""
 
 
 @dataclass(frozen=True)

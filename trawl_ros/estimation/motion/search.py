@@ -10,8 +10,9 @@ from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimate import NetFactor
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.information import joined
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
-from trawl_ros.estimation.motion.information import LinearGroup, joined
+from trawl_ros.estimation.motion.information import LinearGroup
 from trawl_ros.estimation.motion.nuisances import (
     TowLayout,
     columns,
@@ -21,7 +22,6 @@ from trawl_ros.estimation.motion.nuisances import (
 from trawl_ros.estimation.motion.processes import ErrorSizes, group_rows
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
-from trawl_ros.estimation.motion.towing.halved import TowHalved, copied
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.lineariser import TowLineariser
 from trawl_ros.estimation.motion.towing.records import MovingTow
@@ -40,15 +40,7 @@ ROUNDED = 1.0 + 1e-9
 """Factor within which costs are alike."""
 
 LOST = 0.15
-"""Part of the stretches beyond which none may be lost, because boards of the model fall there: a
-single fall costs 12 % of an hour."""
-
-NEARER, STARTS = 0.5, 4
-"""If too much of a tow cannot be simulated, the distance to the prior's mean is multiplied by this
-factor and the fit retried, while that helps; and number of beginnings at most."""
-
-USUAL = 3.5
-"""Matrices that are factorised for a step of a tow where none fails, about."""
+"""Largest part of the stretches that a step may lose because the model cannot be towed there."""
 
 ROUNDS, STAYS = 4, 0.1
 """Rounds of finding both after a towing; logarithm by which no size changes any more."""
@@ -58,9 +50,7 @@ OnTow = Callable[[int, int, int], None]
 
 @dataclass
 class MotionSearch:
-    """Search for the place of least cost: where it is, the tows as they are there, and which of
-    their steps are halved.
-    """
+    """Search for the place of least cost: where it is, and the tows as they are there."""
 
     gear: TowedGear
     tows: Sequence[MovingTow]
@@ -73,18 +63,11 @@ class MotionSearch:
     noise: tuple[FloatArray, ...] = ()
     damping: float = 0.0
     towings: int = 0
-    factorisations: int = 0
-    halved: tuple[TowHalved, ...] = ()
-    began_nearer: bool = False
 
     def linearise(
-        self,
-        at: Place,
-        iteration: int,
-        known: Sequence[TowHalved] = (),
-        before: Sequence[BoolArray] | None = None,
-    ) -> tuple[tuple[LinearisedTow, ...], tuple[TowHalved, ...]]:
-        """Tow all tows at a place, and linearise.
+        self, at: Place, iteration: int, before: Sequence[BoolArray] | None = None
+    ) -> tuple[LinearisedTow, ...]:
+        """Predict all tows at a place, with derivatives.
 
         Parameters
         ----------
@@ -92,58 +75,38 @@ class MotionSearch:
             The place.
         iteration
             Its number.
-        known
-            Steps that are halved there as they were elsewhere.
         before
-            Flags of the stretches that were towed along elsewhere; None if any may be lost.
+            Flags of the stretches that were predicted elsewhere; None if any may be lost.
 
         Raises
         ------
         NoSteadyState
-            As soon as more than `LOST` of those before are lost: the rest need not be towed.
+            As soon as more than `LOST` of those before are lost: the rest need not be predicted.
         """
-        found, halved = [], [copied(own) for own in known] or [{} for _ in self.tows]
+        found = []
         spare = 0 if before is None else most_lost(before)
         self.towings += 1
         for number, (tow, layout, z) in enumerate(zip(self.tows, self.layouts, at, strict=True)):
             point = point_of(tow, layout, z, self.prior.start, self.prior.std)
-            then, own = partial(self.on_stretch, iteration, number), halved[number]
-            towed = TowLineariser(self.gear, tow.channels, point, then, own)
+            towed = TowLineariser(
+                self.gear, tow.channels, point, partial(self.on_stretch, iteration, number)
+            )
             required = None if before is None else before[number]
-            try:
-                towed.extend(tow, point.drifts, required=required, spare=spare)
-            finally:
-                self.factorisations += towed.factorisations
+            towed.extend(tow, point.drifts, required=required, spare=spare)
             found.append(towed.linearised(tow))
             if required is not None:
                 spare -= int(np.sum(required & ~found[-1].towed))
-        return tuple(found), tuple(halved)
+        return tuple(found)
 
     @property
     def is_spent(self) -> bool:
-        """True if no further towing may be begun, by their number or by what they cost."""
-        usual = USUAL * sum(len(tow) * tow.steps for tow in self.tows)
-        return max(self.towings, self.factorisations / usual) >= self.options.towings
+        """True if no further towing may be begun."""
+        return self.towings >= self.options.towings
 
-    def begin(self, *, nearer: bool = True) -> None:
-        """Tow all tows where the search begins, or nearer to what is known where boards fall."""
+    def begin(self) -> None:
+        """Predict all tows where the search begins."""
         self.noise = tuple(tow.noise for tow in self.tows)
-        shared, place = self.layouts[0].shared, self.here
-        standing = [tow.standing for tow in self.tows]
-        self.linear, self.halved = self.linearise(place, 0)
-        for _ in range(STARTS - 1 if nearer else 0):
-            if not (
-                is_lost(towed_flags(self.linear), standing)
-                and any(np.any(z[:shared]) for z in place)
-            ):
-                break
-            place = [np.concatenate((NEARER * z[:shared], z[shared:])) for z in place]
-            tried, halved = self.linearise(place, 0)
-            known = count(towed_flags(self.linear))
-            if known and count(towed_flags(tried)) <= known:
-                break
-            self.here, self.linear, self.halved = place, tried, halved
-            self.began_nearer = True
+        self.linear = self.linearise(self.here, 0)
 
     def data(self, linear: Sequence[LinearisedTow], at: Place) -> LinearData:
         """Rows of linearised tows, by the weights as they are."""
@@ -161,10 +124,11 @@ class MotionSearch:
         data, prior = self.data(self.linear, self.here), self.prior
         told = joined(data.information(sizes), data.precisions(sizes.log), data.shared)
         every = np.linalg.inv(told.matrix + np.eye(data.shared))
-        covariance, layout, known = every[:12, :12], self.layouts[0], self.gear.net_std
-        std = known * np.sqrt(np.diag(every)[layout.of_net])
+        own, layout, known = slice(0, len(prior)), self.layouts[0], self.gear.net_std
+        covariance = every[own, own]
+        net_std = known * np.sqrt(np.diag(every)[layout.of_net])
         return MotionFit(
-            values=prior.start + prior.std * place[0][:12],
+            values=prior.start + prior.std * place[0][own],
             matrix=told.matrix,
             covariance=covariance * np.outer(prior.std, prior.std),
             parameters=tuple(place),
@@ -179,8 +143,8 @@ class MotionSearch:
             converged=converged,
             reason=reason,
             net=tuple(
-                NetFactor(what, float(value), float(own), known)
-                for what, value, own in zip(NET, layout.net(place[0]), std, strict=False)
+                NetFactor(what, float(value), float(std), known)
+                for what, value, std in zip(NET, layout.net(place[0]), net_std, strict=False)
             ),
         )
 
@@ -240,14 +204,14 @@ class MotionSearch:
                 data, self.here, self.prior, sizes, self.options.largest_step, self.damping
             )
             try:
-                tried, halved = self.linearise(there, iteration, self.halved, towed)
+                tried = self.linearise(there, iteration, towed)
             except NoSteadyState:
                 lower = False
             else:
                 lower = self._is_lower(tried, there, sizes)
             if lower:
                 self.linear = tried if regain else without(tried, self.linear)
-                self.here, self.halved = there, halved
+                self.here = there
                 self.damping *= LOOSER
                 if self.damping < LEAST_DAMPING:
                     self.damping = 0.0

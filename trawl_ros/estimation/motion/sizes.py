@@ -8,12 +8,8 @@ from scipy.linalg import cholesky, solve_triangular
 
 from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.estimation.fit.error_terms import GROUPS
-from trawl_ros.estimation.motion.information import (
-    Information,
-    LinearGroup,
-    group_information,
-    joined,
-)
+from trawl_ros.estimation.least_squares.information import Information, joined
+from trawl_ros.estimation.motion.information import LinearGroup, group_information
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, total_covariance
 
 SPREAD = np.array([0.3, 1.0, 0.7, 0.7])

@@ -14,6 +14,8 @@ from trawl_ros.estimation.motion.swell import swell_of
 from trawl_ros.estimation.motion.towing.inputs import TowInputs, on_grid, stacked
 from trawl_ros.estimation.motion.towing.knots import knots_of_counter, knots_of_log
 from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
+from trawl_ros.estimation.windows.operation import Block, Operation
+from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 
 GRID_S = 1.0
@@ -38,8 +40,9 @@ hardly change."""
 FOLLOWED_S = 120.0
 """Time in which the gear has followed a change but for its slow motions."""
 
-NOT_USED = ('vertical_opening',)
-"""Measured channels without a place in time: an opening is stamped when its sweep begins."""
+STEADY_ONLY = ('vertical_opening',)
+"""Measured channels that count while the gear is steady only: an opening is stamped when its sweep
+begins."""
 
 FEWEST = 10
 """Stretches that count in a tow, at least."""
@@ -57,8 +60,8 @@ class StretchOptions:
     step_s, stretch_s
         Step in which a tow is towed; length of a stretch, a whole number of steps.
     settling_s
-        Time after the beginning whose stretches do not count: what the gear did before is not
-        known. 0 for a tow that begins at rest.
+        Time after the beginning whose stretches do not count unless they are steady: what the gear
+        did before is not known. 0 for a tow that begins at rest.
     knot_s, counter_knot_s
         Time between knots of the errors of log and counters.
     counter_std_m, counter_time_s
@@ -115,19 +118,48 @@ def moving_tow(read: TowReadings, name: str, options: StretchOptions) -> MovingT
             f'{name}: lasts {read.duration_s:.0f} s, expected at most {LONGEST_S:.0f} s; '
             'cut it into parts'
         )
-    channels = tuple(c for c in MEASURED if c in read.series and c not in NOT_USED)
+    channels = tuple(c for c in MEASURED if c in read.series)
     parts = [_means(read.series[c], number, options) for c in channels]
     means, noise, counts, weights = (np.stack(part, axis=1) for part in zip(*parts, strict=True))
+    inputs = _inputs(read, number * options.stretch_s, options)
+    held_s = held_times(inputs, number, options.stretch_s)
+    steady = held_s > 0.0
+    settling = min([settling, *np.flatnonzero(steady)[:1].tolist()])
     means[:settling] = np.nan
     why = 'what the gear did before is not known'
     left_out = (LeftOut(0.0, settling * options.stretch_s, why),) if settling else ()
-    inputs = _inputs(read, number * options.stretch_s, options)
+    for column, channel in enumerate(channels):
+        if channel in STEADY_ONLY:
+            means[~steady, column] = np.nan
     return MovingTow(
         name, read.start_ns, options.step_s, options.stretch_s, channels, means, noise,
         counts.astype(np.int64), weights, inputs,
         left_out, fallen_stretches(read.fallen, options.stretch_s, number),
-        swell_of(read, options.stretch_s),
+        swell_of(read, options.stretch_s), held_s,
     )  # fmt: skip
+
+
+def held_times(inputs: TowInputs, number: int, stretch_s: float) -> FloatArray:
+    """Time (number,) for which inputs have been held at the end of each stretch, in s.
+
+    It is 0 of stretches at whose end no steady window may lie. The criteria are those of the window
+    finder: inputs are held as long as the gear takes to settle, and for a window.
+    """
+    options = WindowOptions()
+    operation, size = Operation(options), round(options.block_s / inputs.grid_s)
+    blocks = len(inputs.values) // size
+    held = np.zeros(number)
+    for block in range(blocks):
+        own = slice(block * size, (block + 1) * size)
+        port, starboard, speed = map(float, np.median(inputs.values[own], axis=0))
+        heading = float(np.median(inputs.headings[own]))
+        operation.add(Block(block, (port, starboard, speed), heading, None))
+        # The last block of a stretch decides on it.
+        stretch = int((block + 1.5) * options.block_s / stretch_s) - 1
+        if 0 <= stretch < number and operation.full:
+            steady = operation.unheld() is None
+            held[stretch] = operation.settle_s + options.window_s if steady else 0.0
+    return held
 
 
 def _means(

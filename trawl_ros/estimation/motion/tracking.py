@@ -14,11 +14,11 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.information import own_values
 from trawl_ros.estimation.motion.fit import COOLER, NEAR
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.growing import GrowingLinearisation
-from trawl_ros.estimation.motion.information import own_values
-from trawl_ros.estimation.motion.nuisances import layout_of
+from trawl_ros.estimation.motion.nuisances import layout_of, place_at
 from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.estimation.motion.search import (
     DAMPING,
@@ -32,9 +32,7 @@ from trawl_ros.estimation.motion.search import (
     without,
 )
 from trawl_ros.estimation.motion.sizes import LinearData
-from trawl_ros.estimation.motion.start import starting_point
 from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
-from trawl_ros.estimation.motion.towing.halved import TowHalved, copied
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
@@ -160,7 +158,7 @@ class MotionTracker:
         fit = search.fit(sizes, place, self._towings, converged=False, reason='')
         if not fit.readings:
             return None
-        away = self._prior.std * np.abs(place[0][:12] - search.here[0][:12])
+        away = self._prior.std * np.abs((place[0] - search.here[0])[: len(self._prior)])
         moved = float(np.max(away / np.sqrt(np.diag(fit.covariance))))
         self._held = self._temper == 1.0 and moved < (FAR if self._held else HOLDS)
         reason = f'{moved:.2g} std from where the model was towed'
@@ -205,21 +203,14 @@ class MotionTracker:
         return self._linearisation(search, there)
 
     def _linearisation(self, search: MotionSearch, place: Place) -> GrowingLinearisation:
-        halved: dict[int, TowHalved] = {}
-        if self._here is not None and self._temper == 1.0:
-            halved = {stamp: copied(own) for stamp, own in self._here.halved.items()}
         return GrowingLinearisation(
-            self._towed, self._prior, search.tows, search.layouts, list(place), halved
+            self._towed, self._prior, search.tows, search.layouts, list(place)
         )
 
     def _start(self, search: MotionSearch, windows: Estimate | None) -> Place:
         if windows is None:
             return search.here
-        numbers = sorted({bias.tow for bias in windows.tow_biases})
-        return [
-            starting_point(windows, self._prior, tow, layout, numbers)
-            for tow, layout in zip(search.tows, search.layouts, strict=True)
-        ]
+        return place_at(windows.values, self._prior, search.layouts)
 
     def _compare(self, search: MotionSearch, tried: GrowingLinearisation) -> None:
         """Take a linearisation for that in use if its cost is lower."""

@@ -101,7 +101,7 @@ def _in_swell(swells: Sequence[tuple[str, float]]) -> str:
         f'Within half a minute the tension swings by a part of its mean (std), {swings}: as in a '
         'swell, or with boards that are tossed about. The ship of the model lies still, so that '
         'intervals are too narrow there, and what is learned is of the gear in that swell '
-        '(docs/identification/motion.md).'
+        '(docs/identification/how_it_works.md).'
     )
 
 
@@ -149,6 +149,11 @@ def motion_result(report: Report) -> dict[str, object]:
         'whitened': dict(motion.spread),
         'poor_stretches': [vars(each) for each in motion.poor],
         'left_out': [{'tow': name, **vars(part)} for name, part in motion.left_out],
+        'parts': [
+            {'tow': linear.tow.name, **part.record()}
+            for linear in fit.linear
+            for part in linear.tow.statistics
+        ],
         'swells': [{'tow': name, 'swing': swell} for name, swell in motion.swells],
         'not_used': list(motion.refused),
     }

@@ -13,6 +13,7 @@ from trawl_ros.estimation.report.motion import coefficient_rows, motion_lines
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.estimation.report.result import result
+from trawl_ros.estimation.report.sensors import sensor_cells, sensor_headings
 from trawl_ros.estimation.report.verdict import BEYOND, verdict
 from trawl_ros.estimation.windows.records import REASONS
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -67,6 +68,8 @@ def report_page(report: Report, pictures: Iterable[Picture], advice: Sequence[st
         motion=coefficient_rows(report.motion, report.truth) if report.motion else [],
         motion_lines=motion_lines(report),
         sections=by_section(pictures),
+        sensors=[sensor_cells(row) for row in report.sensors],
+        sensor_headings=sensor_headings(report.sensors),
         residuals=[_residual(row) for row in report.residuals],
         channels=PAPER_CHANNELS,
         tows=_tows(report),

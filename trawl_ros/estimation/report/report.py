@@ -29,6 +29,7 @@ from trawl_ros.estimation.report.residuals import (
     residuals,
     solve_windows,
 )
+from trawl_ros.estimation.report.sensors import SensorComparison, compare_sensors
 from trawl_ros.estimation.report.spectrum import Spectrum, spectrum
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
@@ -104,6 +105,8 @@ class Report:
         Outcome of learning from all of the tows, where that was asked for and can be told.
     motion_refused
         Reason for which it cannot, in a sentence without its full stop; '' without one.
+    sensors
+        Each sensor beside its predictions by the gear file, the start and the estimate.
 
     Examples
     --------
@@ -135,6 +138,7 @@ class Report:
     paired: bool = False
     motion: MotionOutcome | None = None
     motion_refused: str = ''
+    sensors: tuple[SensorComparison, ...] = ()
 
     @property
     def inputs(self) -> FloatArray:
@@ -222,6 +226,13 @@ def report(
     number = 1 + max(window.tow for window in windows)
     own = [linear.state for linear in estimator.fit.windows]
     at_end = solve_windows(estimator, estimate.values, estimator.fit.net, own)
+    at_start = solve_windows(estimator, estimator.prior.start)
+    cases = {'start': at_start, 'refitted': at_end}
+    if gear is not None and gear.pair is None:
+        written = gear.board.coefficients.array()
+        known = np.array_equal(written, estimator.prior.start)
+        by_gear = at_start if known else solve_windows(estimator, written)
+        cases = {'gear_file': by_gear, **cases}
     return Report(
         estimate=estimate,
         prior=estimator.prior,
@@ -232,7 +243,7 @@ def report(
         windows=windows,
         tows=tuple(tows) or tuple(f'tow {tow + 1}' for tow in range(number)),
         measured=stack([paper_values(window.means) for window in windows]),
-        at_start=_values(solve_windows(estimator, estimator.prior.start)),
+        at_start=_values(at_start),
         at_end=_values(at_end),
         held_out=hold_out(estimator, folds, on_progress=on_progress),
         at_truth=None if truth is None else _values(solve_windows(estimator, np.asarray(truth))),
@@ -243,6 +254,7 @@ def report(
         spectrum=spectrum(estimate.covariance, estimator.prior, weight),
         laws=None if gear is None or gear.pair is not None else _laws(at_end, estimate),
         paired=gear is not None and gear.pair is not None,
+        sensors=compare_sensors(cases),
     )
 
 

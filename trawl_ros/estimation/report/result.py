@@ -65,6 +65,7 @@ def result(report: Report) -> dict[str, object]:
         'held_out_by': report.held_out.by,
         'accepted': _accepted(report),
         'tows': _tows(report),
+        'sensors': {row.channel: row.record() for row in report.sensors},
         'residuals': {row.channel: _statistics(row) for row in report.residuals},
         'innovations': {row.channel: _statistics(row) for row in report.innovations},
         'laws': _laws(report),

@@ -50,9 +50,6 @@ milliseconds; derivatives through such a fall are of no use, and a fit leaves it
 EXTRA_MODES = 6
 """Modes sought beyond those asked for: oscillations come in pairs, and some may be missed."""
 
-HalvedSteps = set[tuple[float, float]]
-"""Steps that were halved: when each begins and how long it is, s."""
-
 
 class DifferentiatedTow:
     """Tow along given inputs, with the derivatives of its motion.
@@ -69,9 +66,6 @@ class DifferentiatedTow:
         Effects that act on the gear.
     start
         Equilibrium nearby, from which the search for the first one starts.
-    halved
-        Steps that are halved at once; those that fail are added. Tows that share this set take the
-        same steps, so they differ only by their parameters.
     options
         Options of the time steps.
 
@@ -101,15 +95,12 @@ class DifferentiatedTow:
         inputs: Callable[[float], InputPoint],
         acting: EffectSet = NO_EFFECTS,
         start: Equilibrium | None = None,
-        halved: HalvedSteps | None = None,
         options: LinearisedStepOptions = STEP_OPTIONS,
     ) -> None:
-        self._halved: HalvedSteps = set() if halved is None else halved
         self._plain, self._acting, self._inputs = model, acting, inputs
         self.parameters, self.time, self.steps = parameters, 0.0, 0
         self._net: tuple[BarProperties, NetLoads] | None = None
         self._showing: frozenset[str] = frozenset()
-        self._held_at: FloatArray | None = None
         point = inputs(0.0)
         self._point = point
         self.model = acting.gear(model, point.situation)
@@ -140,47 +131,18 @@ class DifferentiatedTow:
         self._advance(h, MAX_STEP_HALVINGS)
 
     @property
-    def is_held(self) -> bool:
-        """True while the derivatives are held constant."""
-        return self._held_at is not None
-
-    @property
-    def derivatives(self) -> tuple[MotionSlopes, FloatArray]:
-        """Derivatives of the motion, and of the positions (m, 2, 3) of its blocks."""
-        return self.slopes, self.course.slopes.blocks
-
-    def hold(self, slopes: MotionSlopes, blocks: FloatArray) -> None:
-        """Hold the derivatives as they were before boards fell: they are not valid in a fall."""
-        self.slopes, self._held_at = slopes, blocks.copy()
-
-    def release(self) -> None:
-        """Resume the derivatives; the gear has moved along with its blocks meanwhile."""
-        assert self._held_at is not None
-        along = (self.course.slopes.blocks - self._held_at).mean(axis=1).T
-        places, nodes = self.slopes.places, 3 * self.model.nodes
-        places[:nodes] += np.tile(along, (self.model.nodes, 1))
-        places[nodes:].reshape(2, 6, -1)[:, :3] += along
-        self._held_at = None
-
-    @property
     def factorisations(self) -> int:
         """Number of factorisations so far, including those of failed steps."""
         return self._stepper.factorisations
 
     def _advance(self, h: float, left: int) -> None:
-        own = self.time, h
-        if left == 0 or self.is_held or own not in self._halved:
-            try:
-                self.step(h)
-            except StepFailed:
-                if left == 0:
-                    raise
-                if not self.is_held:
-                    self._halved.add(own)
-            else:
-                return
-        self._advance(0.5 * h, left - 1)
-        self._advance(0.5 * h, left - 1)
+        try:
+            self.step(h)
+        except StepFailed:
+            if left == 0:
+                raise
+            self._advance(0.5 * h, left - 1)
+            self._advance(0.5 * h, left - 1)
 
     def step(self, h: float) -> None:
         """Advance by one step of ``h`` seconds.
@@ -195,7 +157,7 @@ class DifferentiatedTow:
         model = self._acting.gear(self._plain, point.situation)
         course = course_point(model, self._acting, self.parameters, point, self.course, h)
         self._stepper.model = model
-        if self.parameters and not self.is_held:
+        if self.parameters:
             at = self._stepper.linearised_step(self.motion, course.tow, h)
             motion = at.solved.step.motion(at.solved.acceleration)
             end = StepEnd(motion.state, motion.acceleration, course.tow, at.predicted)
@@ -221,8 +183,6 @@ class DifferentiatedTow:
         """Set the derivatives by some parameters to zero, as if these began to act now."""
         for slopes in self.slopes.arrays:
             slopes[:, columns] = 0.0
-        if self._held_at is not None:
-            self._held_at[columns] = 0.0
         course = self.course
         for slopes in (
             course.way.slopes,

@@ -1,12 +1,12 @@
 """Inputs of a tow: warp lengths, speed and heading as instruments show them, and their errors."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
-from trawl_ros.estimation.motion.towing.knots import Knots
+from trawl_ros.estimation.motion.towing.knots import Knots, hats
 from trawl_ros.records.channels import CHANNELS, INPUTS
 from trawl_ros.solver.motion.course import InputPoint
 
@@ -101,6 +101,29 @@ class TowInputs:
 
 
 @dataclass(frozen=True)
+class MeanInputs:
+    """Inputs averaged over a time.
+
+    Attributes
+    ----------
+    values : (3,) array
+        Warp lengths (m) and speed (m/s).
+    by_errors : (e, 3) array
+        Derivatives by a std of each of `INPUT_ERRORS`.
+    by_knots
+        Derivatives (number,) of each input by its errors at all knots, input by input.
+    heading, hours
+        ENU yaw (rad), and time since the tow began.
+    """
+
+    values: FloatArray
+    by_errors: FloatArray
+    by_knots: Mapping[str, FloatArray]
+    heading: float
+    hours: float
+
+
+@dataclass(frozen=True)
 class CorrectedInputs:
     """Inputs of a tow, corrected for errors of their instruments, with their derivatives.
 
@@ -148,6 +171,23 @@ class CorrectedInputs:
             rate[column] -= knots.hat_rates(time) @ self.drifts[own]
         hours = self.inputs.hours + time / 3600.0
         return InputPoint(value, rate, heading, yaw_rate, hours, additions, paces)
+
+    def mean(self, begin: float, end: float) -> MeanInputs:
+        """Mean from one time (s since the tow began) to another."""
+        inputs, step = self.inputs, self.inputs.grid_s
+        first = min(max(round(begin / step), 0), len(inputs.values) - 1)
+        last = min(max(round(end / step), first), len(inputs.values) - 1)
+        own = slice(first, last + 1)
+        shown = inputs.values[own].mean(axis=0)
+        by_errors, by_knots = _by_errors(shown, 1.0), {}
+        value = shown + self.errors @ by_errors
+        for knots, place, _ in inputs.knot_places:
+            times: FloatArray = step * np.arange(first, last + 1, dtype=np.float64)
+            by_knots[knots.channel] = -hats(times, knots.number, knots.spacing_s).mean(axis=0)
+            value[INPUTS.index(knots.channel)] += by_knots[knots.channel] @ self.drifts[place]
+        heading = float(inputs.headings[own].mean())
+        hours = inputs.hours + 0.5 * step * (first + last) / 3600.0
+        return MeanInputs(value, by_errors, by_knots, heading, hours)
 
     def _additions(
         self, time: float, shown: FloatArray, rates: FloatArray

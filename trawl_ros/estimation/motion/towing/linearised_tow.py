@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
+from trawl_ros.estimation.motion.towing.linearisation import STARTS, Linearisation
 from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
-from trawl_ros.estimation.motion.towing.towed_gear import TowedPoint
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
 
 
 @dataclass(frozen=True)
@@ -25,16 +27,14 @@ class LinearisedTow:
         By a std of each of `INPUT_ERRORS`.
     by_knots : (n, k, knots) array
         By an input's error at each knot, per SI unit.
-    by_motions : (n, k, motions) array
-        By a metre of each slow motion at the beginning.
+    by_starts : (n, k, starts) array
+        By the amplitudes (m) of the slowest motions with which each part may begin.
     by_net : (n, k, 2 or 0) array
         By the factors on drag and weight of the net.
     by_examined : (n, k, values) array
         By the values of the effects that are examined, of what they do to the gear and its inputs.
     left_out
-        Stretches that the model cannot tow, and why.
-    factorisations
-        Matrices that were factorised for it, a measure of what it cost.
+        Stretches that cannot be predicted, and why.
     """
 
     tow: MovingTow
@@ -44,11 +44,41 @@ class LinearisedTow:
     by_added_mass: FloatArray
     by_errors: FloatArray
     by_knots: FloatArray
-    by_motions: FloatArray
+    by_starts: FloatArray
     by_net: FloatArray
     by_examined: FloatArray
     left_out: tuple[LeftOut, ...]
-    factorisations: int
+
+    @classmethod
+    def empty(
+        cls, tow: MovingTow, point: TowedPoint, gear: TowedGear, left_out: tuple[LeftOut, ...]
+    ) -> 'LinearisedTow':
+        """Tow without any prediction."""
+        of_examined = sum(len(effect.parameters) for effect in gear.examined)
+        of_inputs = len(INPUT_ERRORS), tow.inputs.number_of_knots
+        widths = (len(point.coefficients), 1, *of_inputs, tow.starts, gear.of_net, of_examined)
+        coefficients, mass, errors, knots, starts, net, examined = (
+            np.zeros((*tow.means.shape, width)) for width in widths
+        )
+        values = np.full(tow.means.shape, np.nan)
+        return cls(
+            tow, point, values, coefficients, mass, errors, knots, starts, net, examined, left_out
+        )
+
+    def put(self, stretch: int, means: Linearisation) -> None:
+        """Put the prediction of a stretch in its place."""
+        by = means.by
+        self.values[stretch] = means.values
+        self.by_coefficients[stretch] = by['coefficients']
+        self.by_added_mass[stretch] = by['added_mass']
+        self.by_errors[stretch] = by['errors']
+        for knots, own, _ in self.tow.inputs.knot_places:
+            slopes = by[knots.channel]
+            self.by_knots[stretch][:, own.start : own.start + slopes.shape[1]] = slopes
+        starts = by.get(STARTS, np.zeros((0, 0)))[:, : self.tow.starts]
+        self.by_starts[stretch][:, : starts.shape[1]] = starts if len(starts) else 0.0
+        self.by_net[stretch] = by['net'] / self.point.net if self.by_net.size else 0.0
+        self.by_examined[stretch] = by['examined']
 
     @property
     def towed(self) -> BoolArray:

@@ -1,46 +1,51 @@
-"""Lineariser of tows in motion: means of stretches, with derivatives by all that is towed."""
+"""Lineariser of tows, a chain of parts: steady ones by equilibria, moving ones integrated in time.
+
+A part in which the inputs have been held for long is predicted by the equilibrium of its inputs. A
+moving part is integrated from the equilibrium of the steady part before it, and ends at the next.
+Between parts the amplitudes of the gear's slowest motions are carried. Where a part cannot
+be predicted it is left out, and the next steady part begins with unknown amplitudes.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
+from typing import NoReturn
 
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.estimation.motion.towing.halved import TowHalved
-from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, CorrectedInputs
+from trawl_ros.estimation.motion.towing.held import HeldGear, hold_gear, projection
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, CorrectedInputs, MeanInputs
+from trawl_ros.estimation.motion.towing.linearisation import (
+    SLOW_MOTIONS,
+    Linearisation,
+    unknown_amplitudes,
+)
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
-from trawl_ros.estimation.motion.towing.records import SETTLING_S, LeftOut, MovingTow
-from trawl_ros.estimation.motion.towing.towed_gear import ADDED_MASS, TowedGear, TowedPoint
-from trawl_ros.estimation.motion.towing.towed_means import TowedMeans, average_of
-from trawl_ros.estimation.motion.towing.towed_stretch import (
-    AGAIN_S,
-    BY_SENSOR,
-    NotTowed,
-    refused_if_unstable,
-    tow_along,
-)
-from trawl_ros.estimation.motion.towing.under_way import (
-    AFTER_A_STOP,
-    InputsUnderWay,
-    MotionUnderWay,
-)
-from trawl_ros.records.observables import OBSERVABLES
-from trawl_ros.solver.effect_sensitivity import sensor_slopes, shown_values
-from trawl_ros.solver.motion.parameters import NET, MotionParameters
+from trawl_ros.estimation.motion.towing.moving import MovingCourse, MovingGear
+from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
+from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
 
+UNSTABLE = 1e6
+"""Derivative of a mean by a coefficient, in noise of the mean, above which motion is unstable."""
+
+BY_SENSOR = 'a board has fallen, by its sensor'
+
+NEARBY = np.array([*(WindowOptions.length_tolerance,) * 2, 0.5 * WindowOptions.speed_tolerance])
+"""Largest departure of warp lengths (m) and speed (m/s) from those of an equilibrium that is used
+for a stretch."""
+
+
+class NotPredicted(Exception):
+    """Reason why a stretch has no prediction."""
+
 
 class TowLineariser:
-    """Tow of the gear along inputs, linearised stretch by stretch; a tow may grow between.
-
-    Where boards fall, at sea or in the model, derivatives do not hold: they stay as they were
-    before, the model is towed on, and stretches are left out until its derivatives have settled
-    again. Where it lies for long, or no step leads on, the tow is begun anew in the equilibrium of
-    the inputs there. Stretches in which the gear breaks the surface are left out too.
+    """Predictions of a tow with derivatives, stretch by stretch; the tow may grow between calls.
 
     Parameters
     ----------
@@ -52,15 +57,11 @@ class TowLineariser:
         Point of linearisation.
     on_stretch
         Called after each stretch, with its number.
-    halved
-        Steps that were halved at other points and are at this; those that fail are added.
 
     Attributes
     ----------
     channels
         Measured channels.
-    factorisations
-        Matrices that were factorised so far.
     """
 
     def __init__(
@@ -69,15 +70,15 @@ class TowLineariser:
         channels: tuple[str, ...],
         point: TowedPoint,
         on_stretch: Callable[[int], None] = lambda number: None,
-        halved: TowHalved | None = None,
     ) -> None:
         self._gear, self._point, self._on_stretch = gear, point, on_stretch
-        self._halved: TowHalved = {} if halved is None else halved
-        self.channels, self.factorisations = channels, 0
-        self._rows = [OBSERVABLES.index(name) for name in channels]
-        self._motion: MotionUnderWay | None = None
-        self._again = 0.0
-        self._means: list[TowedMeans | None] = []
+        self.channels = channels
+        self._held: HeldGear | None = None
+        self._moving: MovingGear | None = None
+        self._amplitudes: Linearisation | None = None
+        self._since = 0.0
+        self._failed, self._lost_part = '', -1
+        self._means: list[Linearisation | None] = []
         self._left_out: list[LeftOut] = []
 
     def __len__(self) -> int:
@@ -91,16 +92,16 @@ class TowLineariser:
         required: BoolArray | None = None,
         spare: int = 0,
     ) -> int:
-        """Tow on along a tow that has grown.
+        """Predict the new stretches of a tow that has grown.
 
         Parameters
         ----------
         tow
-            Inputs and stretches, of which the first have been towed along before.
+            Inputs and stretches, of which the first have been predicted before.
         drifts
             Errors (knots,) of its inputs at all knots; those so far as they were.
         most
-            Number of stretches that are towed along at most.
+            Number of stretches that are predicted at most.
         required
             Flags (n,) of stretches that may not be left out, none where None.
         spare
@@ -109,7 +110,7 @@ class TowLineariser:
         Returns
         -------
         int
-            Number of stretches that were towed along.
+            Number of stretches that were predicted or left out.
 
         Raises
         ------
@@ -119,96 +120,149 @@ class TowLineariser:
         first = len(self)
         last = len(tow) if most is None else min(len(tow), first + most)
         self._point = replace(self._point, drifts=drifts)
-        if self._motion is not None:
-            self._motion.follow(tow.inputs, drifts)
+        if self._moving is not None:
+            self._moving.follow(tow.inputs, drifts)
         for stretch in range(first, last):
-            found = self._towed(tow, stretch)
-            if isinstance(found, NotTowed):
-                begin = stretch * tow.stretch_s
+            begin = stretch * tow.stretch_s
+            try:
+                self._means.append(self._predicted(tow, stretch))
+            except NotPredicted as reason:
                 spare -= required is not None and bool(required[stretch])
                 if spare < 0:
-                    raise NoSteadyState(f'{begin:.0f} s after the beginning {found.why}')
-                self._left_out.append(LeftOut(begin, begin + tow.stretch_s, found.why))
-            self._means.append(None if isinstance(found, NotTowed) else found)
-            if self._motion is not None:
-                self._on_stretch(stretch)
+                    raise NoSteadyState(f'{begin:.0f} s after the beginning {reason}') from None
+                self._left_out.append(LeftOut(begin, begin + tow.stretch_s, str(reason)))
+                self._means.append(None)
+            self._on_stretch(stretch)
         return max(last - first, 0)
 
     def linearised(self, tow: MovingTow) -> LinearisedTow:
-        """Tow as it is linearised so far, of which all has been towed along."""
-        n, k, number = len(tow), len(tow.channels), tow.inputs.number_of_knots
-        gear = self._gear
-        of_net = len(NET) if gear.net_std else 0
-        examined = sum(len(effect.parameters) for effect in gear.examined)
-        result = LinearisedTow(
-            tow, self._point,
-            np.full((n, k), np.nan), np.zeros((n, k, 12)), np.zeros((n, k, 1)),
-            np.zeros((n, k, len(INPUT_ERRORS))), np.zeros((n, k, number)),
-            np.zeros((n, k, gear.motions)), np.zeros((n, k, of_net)), np.zeros((n, k, examined)),
-            tuple(self._left_out), self.factorisations,
-        )  # fmt: skip
-        places = tow.inputs.knot_places
-        for stretch, means in enumerate(self._means[:n]):
-            if means is None:
-                continue
-            result.values[stretch] = means.values
-            result.by_coefficients[stretch] = means.by_coefficients
-            result.by_added_mass[stretch] = means.by_added_mass
-            result.by_errors[stretch] = means.by_errors
-            for (_, own, _), (knot, slopes) in zip(places, means.by_knots, strict=True):
-                at = own.start + knot
-                result.by_knots[stretch][:, at : at + slopes.shape[1]] = slopes
-            result.by_motions[stretch][:, : means.by_motions.shape[1]] = means.by_motions
-            result.by_net[stretch] = means.by_net / self._point.net if of_net else 0.0
-            result.by_examined[stretch] = means.by_examined
+        """Tow as it is linearised so far, of which all has been predicted."""
+        result = LinearisedTow.empty(tow, self._point, self._gear, tuple(self._left_out))
+        for stretch, means in enumerate(self._means[: len(tow)]):
+            if means is not None:
+                result.put(stretch, means)
         return result
 
-    def _towed(self, tow: MovingTow, stretch: int) -> TowedMeans | NotTowed:
-        """Tow along a stretch; the means, or the reason for which it is left out."""
-        begin, fell = stretch * tow.stretch_s, stretch in tow.fallen
-        if self._motion is None and (fell or begin < self._again):
-            return NotTowed(BY_SENSOR if fell else AFTER_A_STOP)
+    def _predicted(self, tow: MovingTow, stretch: int) -> Linearisation:
+        if stretch in tow.fallen:
+            self._fail(BY_SENSOR)
         try:
-            motion = self._motion = self._motion or self._begun(tow, begin)
+            if tow.steady[stretch]:
+                if tow.steady_part[stretch] == self._lost_part:
+                    raise NotPredicted(self._failed)
+                return self._in_steady(tow, stretch)
+            if tow.steady_only:
+                self._held = self._amplitudes = None
+                self._failed = ''
+                raise NotPredicted('the gear moves')
+            if self._failed:
+                raise NotPredicted(self._failed)
+            return self._in_motion(tow, stretch)
         except (NoSteadyState, StepFailed) as error:
-            self._again = begin + AGAIN_S
-            return NotTowed(f'the model cannot be towed: {error}')
+            if tow.steady[stretch]:
+                # It takes long to find that there is no equilibrium, and none is near.
+                self._lost_part = int(tow.steady_part[stretch])
+            self._fail(f'the model cannot be towed: {error}')
 
-        def averaged(instants: list[MotionPrediction]) -> TowedMeans | NotTowed:
-            means = average_of(tow, stretch, motion, instants)
-            return refused_if_unstable(means.by_coefficients, tow.noise[stretch]) or means
+    def _fail(self, why: str) -> NoReturn:
+        """End the part; the next steady stretch begins another."""
+        self._moving = self._held = self._amplitudes = None
+        self._failed = why
+        raise NotPredicted(why)
 
-        before = motion.towed.factorisations
-        found = tow_along(motion, tow, stretch, averaged)
-        self.factorisations += motion.towed.factorisations - before
-        if isinstance(found, NotTowed) and found.ends:
-            self._motion, self._again = None, begin + AGAIN_S
-        return found
+    def _mean_inputs(self, tow: MovingTow, begin: float, end: float) -> MeanInputs:
+        along = CorrectedInputs(tow.inputs, self._point.errors, self._point.drifts)
+        return along.mean(begin, end)
 
-    def _begun(self, tow: MovingTow, begin: float) -> MotionUnderWay:
-        gear, point, anew = self._gear, self._point, begin > 0.0
-        course = InputsUnderWay(CorrectedInputs(tow.inputs, point.errors, point.drifts, begin))
-        parameters = MotionParameters(
-            coefficients=True,
-            net=bool(gear.net_std),
-            effects=(ADDED_MASS, *gear.examined),
-            inputs=course.inputs.names,
-            motions=0 if anew else gear.motions,
-        )
-        acting = gear.with_added_mass(point.added_mass)
-        halved = self._halved.setdefault(begin, set())
-        towed = DifferentiatedTow(gear.model_at(point), parameters, course, acting, halved=halved)
-        counts_from = begin + SETTLING_S if anew else 0.0
-        return MotionUnderWay(towed, course, partial(self._observed, course), counts_from)
+    def _hold(self, mean: MeanInputs) -> HeldGear:
+        """Equilibrium of mean inputs, that found last where it is near enough."""
+        held = self._held
+        if held is None or np.any(np.abs(mean.values - held.inputs) > NEARBY):
+            start = None if held is None else held.equilibrium
+            self._held = held = hold_gear(self._gear, self._point, mean, self.channels, start)
+        return held
 
-    def _observed(self, course: InputsUnderWay, towed: DifferentiatedTow) -> MotionPrediction:
-        observed, acting = towed.observed(), self._gear.acting
-        values, slopes = observed.values, observed.slopes
-        if acting.on_sensors:
-            at = course(towed.time).situation
-            slopes = sensor_slopes(acting, values, at) @ slopes
-            values = shown_values(acting, values, at)
-        return MotionPrediction(values[self._rows], slopes[self._rows])
+    def _in_steady(self, tow: MovingTow, stretch: int) -> Linearisation:
+        """Means of a steady stretch."""
+        begin, end = stretch * tow.stretch_s, (stretch + 1) * tow.stretch_s
+        # The net's depth follows the speed in many minutes, and the log scatters more than the
+        # ship's speed changes while it is held.
+        mean = self._mean_inputs(tow, end - tow.held_s[stretch], end)
+        last, held = self._held, self._hold(mean)
+        if self._moving is not None:
+            departure = self._parts(self._moving, self._moving.seen).plus(held.at(mean), -1.0)
+            self._amplitudes = departure.through(held.projection)
+            self._moving, self._since = None, begin
+        elif self._amplitudes is None:
+            self._amplitudes = unknown_amplitudes(int(tow.steady_part[stretch]))
+            self._since = begin
+        elif last is not None and last is not held:
+            self._carry(last, begin, held.projection)
+        self._failed = ''
+        left = held.decayed(self._amplitudes, begin + 0.5 * tow.stretch_s - self._since)
+        return held.at(mean).plus(left.through(held.shapes))
+
+    def _in_motion(self, tow: MovingTow, stretch: int) -> Linearisation:
+        """Means of a moving stretch."""
+        begin = stretch * tow.stretch_s
+        if self._moving is None:
+            self._moving = self._begun(tow, begin)
+        moving = self._moving
+        step_s, weights = tow.steps_of(stretch)
+        instants = moving.advance_to(begin + tow.stretch_s, step_s)
+        if moving.fallen:
+            self._fail('a board of the model falls over')
+        if moving.surfaced:
+            raise NotPredicted('the gear of the model breaks the surface')
+        means = self._parts(moving, moving.average(instants, weights, begin))
+        if np.any(np.abs(means.by['coefficients']) > UNSTABLE * tow.noise[stretch][:, None]):
+            self._fail('the motion of the model is unstable')
+        return means
+
+    def _begun(self, tow: MovingTow, begin: float) -> MovingGear:
+        """Motion begun in the equilibrium before a stretch."""
+        point, gear = self._point, self._gear
+        inputs = CorrectedInputs(tow.inputs, point.errors, point.drifts, begin)
+        course, start = MovingCourse(inputs), None
+        if self._held is None:
+            self._amplitudes = unknown_amplitudes(0)
+        else:
+            since = begin - tow.held_s[round(begin / tow.stretch_s) - 1]
+            course.first = self._mean_inputs(tow, since, begin).values
+            start = self._held.equilibrium
+
+        def observed(towed: DifferentiatedTow) -> MotionPrediction:
+            return gear.observed(towed, course(towed.time).situation, self.channels)
+
+        towed = DifferentiatedTow(
+            gear.model_at(point), gear.parameters(inputs.names, motions=SLOW_MOTIONS), course,
+            gear.with_added_mass(point.added_mass), start,
+        )  # fmt: skip
+        moving = MovingGear(towed, course, observed)
+        if self._held is not None:
+            shapes = moving.seen.slopes[:, towed.parameters.of_motions]
+            self._carry(self._held, begin, projection(shapes, self.channels))
+        return moving
+
+    def _carry(self, held: HeldGear, time: float, onto: FloatArray) -> None:
+        """Carry the amplitudes of an equilibrium's motions to a time, as those of another's.
+
+        The shapes of a motion that is alike on both sides, but for its sign, have any sign.
+        """
+        assert self._amplitudes is not None
+        left = held.decayed(self._amplitudes, time - self._since)
+        self._amplitudes, self._since = left.through(onto @ held.shapes), time
+
+    def _parts(self, moving: MovingGear, found: MotionPrediction) -> Linearisation:
+        """Prediction with what is left of the slowest motions from before."""
+        parameters = moving.towed.parameters
+        by = self._gear.parts(found.slopes, parameters)
+        by['errors'] = found.slopes[:, parameters.of_inputs][:, : len(INPUT_ERRORS)]
+        by.update(moving.knot_slopes(found.slopes))
+        plain = Linearisation(found.values, by)
+        if self._amplitudes is None:
+            return plain
+        return plain.plus(self._amplitudes.through(found.slopes[:, parameters.of_motions]))
 
 
 def linearise_tow(
@@ -217,9 +271,8 @@ def linearise_tow(
     point: TowedPoint,
     required: BoolArray | None = None,
     on_stretch: Callable[[int], None] = lambda number: None,
-    halved: TowHalved | None = None,
 ) -> LinearisedTow:
-    """Tow the gear along a tow's inputs from beginning to end, and linearise.
+    """Predict a tow from beginning to end, with derivatives.
 
     Parameters
     ----------
@@ -233,14 +286,12 @@ def linearise_tow(
         Flags (n,) of stretches that may not be left out, none where None.
     on_stretch
         Called after each stretch, with its number.
-    halved
-        Steps that were halved at other points and are at this; those that fail are added.
 
     Raises
     ------
     NoSteadyState
         If a stretch that is required must be left out.
     """
-    lineariser = TowLineariser(gear, tow.channels, point, on_stretch, halved)
+    lineariser = TowLineariser(gear, tow.channels, point, on_stretch)
     lineariser.extend(tow, point.drifts, required=required)
     return lineariser.linearised(tow)

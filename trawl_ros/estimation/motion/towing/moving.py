@@ -1,41 +1,43 @@
-"""Motion of the model under way along a tow's inputs, which may become longer meanwhile."""
+"""Moving part of a tow: the motion of the model along inputs, which may become longer meanwhile."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.motion.towing.inputs import CorrectedInputs, TowInputs
-from trawl_ros.estimation.motion.towing.records import SETTLING_S
 from trawl_ros.model.observables import fallen_boards
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.readings import MotionPrediction
-from trawl_ros.solver.motion.slopes import MotionSlopes
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 
 HIGHEST_M = 0.0
-"""Height above which a node has broken the surface."""
-
-AFTER_A_STOP = 'the tow of the model was begun anew after a stop'
-
-AFTER_A_FALL = 'boards had fallen shortly before'
+"""Height (m) above which a node has broken the surface."""
 
 
 @dataclass
-class InputsUnderWay:
-    """Inputs along which the model is towed; they may become longer on the way."""
+class MovingCourse:
+    """Course along which the model is towed; it may become longer on the way.
+
+    ``first`` are the inputs (3,) of the equilibrium in which the motion begins; those at its
+    beginning where None.
+    """
 
     inputs: CorrectedInputs
+    first: FloatArray | None = None
 
     def __call__(self, time: float) -> InputPoint:
         """Inputs so many seconds after the motion began."""
-        return self.inputs(time)
+        point = self.inputs(time)
+        if time > 0.0 or self.first is None:
+            return point
+        return replace(point, inputs=self.first, rates=np.zeros(3), yaw_rate=0.0)
 
 
 @dataclass
-class MotionUnderWay:
-    """Motion under way.
+class MovingGear:
+    """Gear in motion.
 
     Attributes
     ----------
@@ -43,20 +45,13 @@ class MotionUnderWay:
         The tow of the model, and its inputs.
     observe
         Gives what is observed of the tow where it is.
-    counts_from, settles
-        Time (s) from which its stretches count, and why they do not before.
-    held_since
-        Time (s) since which its derivatives are held, where they are.
     seen
         Observables now.
     """
 
     towed: DifferentiatedTow
-    course: InputsUnderWay
+    course: MovingCourse
     observe: Callable[[DifferentiatedTow], MotionPrediction]
-    counts_from: float
-    held_since: float | None = None
-    settles: str = AFTER_A_STOP
     _newest: dict[str, int] = field(default_factory=dict)
     _newest_from: dict[str, float] = field(default_factory=dict)
 
@@ -71,15 +66,12 @@ class MotionUnderWay:
         return self.course.inputs
 
     def follow(self, inputs: TowInputs, drifts: FloatArray, time: float | None = None) -> None:
-        """Go on along inputs that have become longer, with errors at their knots; where they begin
-        at another time, ``time`` (s) is the present one in theirs, and none of them has knots.
+        """Follow inputs that have become longer, with errors at their knots; where they begin at
+        another time, ``time`` (s) is the present one in theirs, and none of them has knots.
         """
         later = 0.0 if time is None else time - self.time
         begin = self.inputs.begin + later
         self.course.inputs = replace(self.inputs, inputs=inputs, drifts=drifts, begin=begin)
-        self.counts_from += later
-        if self.held_since is not None:
-            self.held_since += later
 
     @property
     def time(self) -> float:
@@ -97,29 +89,47 @@ class MotionUnderWay:
                 self.towed.forget(slice(column, column + 1))
         self.towed.advance(h)
 
-    def towed_on(self, end: float, step_s: float) -> Iterator[MotionPrediction]:
-        """Advance to a time (s) in steps; give what is observed behind each."""
+    def advance_to(self, end: float, step_s: float) -> list[MotionPrediction]:
+        """Advance to a time (s) in steps; return what is observed at the beginning and after each.
+
+        Raises
+        ------
+        StepFailed
+            If not even short steps converge.
+        """
+        instants = [self.seen]
         while self.time < end - 1e-6:
             left = end - self.time
             self.advance(left if left < step_s - 1e-6 else step_s)
             self.seen = self.observe(self.towed)
-            yield self.seen
+            instants.append(self.seen)
+        return instants
 
-    def hold(self, derivatives: tuple[MotionSlopes, FloatArray], begin: float) -> None:
-        """Hold the derivatives as they were at a time (s); what began to act since has none."""
-        if self.held_since is None:
-            self.held_since = begin
-            self.towed.hold(*derivatives)
-            for column in self.begun_since(begin):
-                self.towed.forget(slice(column, column + 1))
+    def average(
+        self, instants: list[MotionPrediction], weights: FloatArray, begin: float
+    ) -> MotionPrediction:
+        """Weighted mean of instants from a time (s) on, by weights (k, s + 1)."""
+        values = np.array([instant.values for instant in instants])
+        slopes = np.array([instant.slopes for instant in instants])
+        for column in self._begun_since(begin):
+            # The column of the newest knot was another's until this stretch began.
+            slopes[0, :, column] = 0.0
+        return MotionPrediction(
+            np.einsum('ki,ik->k', weights, values), np.einsum('ki,ikm->km', weights, slopes)
+        )
 
-    def release(self) -> None:
-        """Go on with the derivatives, and let them settle before stretches count."""
-        self.towed.release()
-        self.held_since, self.counts_from = None, self.time + SETTLING_S
-        self.settles = AFTER_A_FALL
+    def knot_slopes(self, slopes: FloatArray) -> dict[str, FloatArray]:
+        """Derivatives (k, number) by all knots of each input, from those (k, m) of the motion."""
+        found, of_inputs = {}, slopes[:, self.towed.parameters.of_inputs]
+        for knots, _, first in self.inputs.inputs.knot_places:
+            every = np.zeros((len(slopes), knots.number))
+            acting = knots.acting(self.time - 1e-6)
+            columns = [first + knot % knots.columns for knot in acting]
+            every[:, acting.start : acting.stop] = of_inputs[:, columns]
+            found[knots.channel] = every
+        return found
 
-    def begun_since(self, begin: float) -> list[int]:
+    def _begun_since(self, begin: float) -> list[int]:
         """Columns of the knots that have begun to act since a time (s)."""
         return [
             self._of_inputs + first + self._newest[knots.channel] % knots.columns

@@ -1,0 +1,1 @@
+"""Bounded least squares in information form; it knows nothing of trawls."""
