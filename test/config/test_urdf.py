@@ -10,8 +10,8 @@ from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.transforms import mounts_message
 from trawl_ros.records.frames import (
+    DOOR_MOUNTS,
     FRAME_SENTENCES,
-    SPREAD_MOUNT,
     WIDTH_MOUNT,
     echo_sounder_mount,
 )
@@ -21,7 +21,7 @@ ROOT = ET.parse(share_path('config', 'urdf', 'trawl.urdf')).getroot()
 JOINTS = list(ROOT.iter('joint'))
 MOUNTS = (
     echo_sounder_mount(load_instruments().vessel.draught_m),
-    SPREAD_MOUNT,
+    *DOOR_MOUNTS,
     WIDTH_MOUNT,
 )
 

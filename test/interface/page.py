@@ -16,8 +16,8 @@ from trawl_ros.nodes.runtime.parameters import FIXED, Flag, Names, Number, Spec
 from trawl_ros.nodes.runtime.qos import LATCHED, STREAM
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.frames import (
+    DOOR_MOUNTS,
     FRAME_SENTENCES,
-    SPREAD_MOUNT,
     WIDTH_MOUNT,
     WITHOUT_PREFIX,
     echo_sounder_mount,
@@ -212,7 +212,7 @@ def frames_table() -> str:
         mount.frame: mount
         for mount in (
             echo_sounder_mount(load_instruments().vessel.draught_m),
-            SPREAD_MOUNT,
+            *DOOR_MOUNTS,
             WIDTH_MOUNT,
         )
     }

@@ -14,8 +14,8 @@ from trawl_ros.messages.pieces import ABSENT, UNKNOWN_VARIANCE
 from trawl_ros.messages.rotations import to_angles, to_quaternion
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.frames import (
+    DOOR_MOUNTS,
     FRAME_SENTENCES,
-    SPREAD_MOUNT,
     WIDTH_MOUNT,
     echo_sounder_mount,
 )
@@ -90,7 +90,7 @@ def test_rep_105_a_frame_is_one_of_the_tree(row):
 
 def test_rep_105_frames_are_one_tree_from_map():
     parents = {mount.frame: mount.parent for mount in (
-        echo_sounder_mount(6.5), SPREAD_MOUNT, WIDTH_MOUNT,
+        echo_sounder_mount(6.5), *DOOR_MOUNTS, WIDTH_MOUNT,
     )}  # fmt: skip
     parents |= {VESSEL: ODOM, ODOM: MAP, SONAR: MAP, **dict.fromkeys(DOOR_FRAMES.values(), MAP)}
     assert set(parents) == set(FRAME_SENTENCES) - {MAP}

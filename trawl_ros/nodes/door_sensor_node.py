@@ -9,7 +9,7 @@ from trawl_ros.messages.truth_from_messages import door_truth
 from trawl_ros.nodes.instrument_node import InstrumentNode, Setup
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.runtime.transforms import send_mounts
-from trawl_ros.records.frames import SPREAD_MOUNT
+from trawl_ros.records.frames import DOOR_MOUNTS
 from trawl_ros.records.partial_truth import partial_truth
 from trawl_ros.records.samples import Sample
 
@@ -23,7 +23,7 @@ class DoorSensorNode(InstrumentNode):
 
     def set_up(self, setup: Setup) -> Sequence[Faulty]:
         """Make the instruments and give all of them."""
-        send_mounts(self, [SPREAD_MOUNT])
+        send_mounts(self, DOOR_MOUNTS)
         self._instruments = DoorInstruments(
             setup.parameters.door, setup.draws, surroundings=setup.surroundings
         )

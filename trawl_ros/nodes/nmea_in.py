@@ -32,7 +32,7 @@ from trawl_ros.nodes.runtime.reading import possible_sample
 from trawl_ros.nodes.runtime.run import run
 from trawl_ros.nodes.runtime.transforms import ShipPose, send_mounts, sends_transforms
 from trawl_ros.records.fields import FIELDS, WaterColumn
-from trawl_ros.records.frames import SPREAD_MOUNT, echo_sounder_mount
+from trawl_ros.records.frames import DOOR_MOUNTS, echo_sounder_mount
 from trawl_ros.records.possible import impossible
 from trawl_ros.records.samples import Sample, WinchSample
 from trawl_ros.records.towing_limits import LIMITS
@@ -121,7 +121,7 @@ class NmeaIn(TrawlNode):
             origin = Datum(datum['datum_lat'], datum['datum_lon'])
             self._pose = ShipPose(origin, odom=bool(self.frames['odom_frame']))
         send_mounts(
-            self, [echo_sounder_mount(given['draught_m'] or vessel.draught_m), SPREAD_MOUNT]
+            self, [echo_sounder_mount(given['draught_m'] or vessel.draught_m), *DOOR_MOUNTS]
         )
         self._clocks: dict[str, LinkClock] = {}
         self._tag_clocks: dict[str, LinkClock] = {}

@@ -10,6 +10,7 @@ from trawl_ros.records.registry import (
     ECHO_SOUNDER,
     MAP,
     ODOM,
+    SLANT_RANGE,
     SONAR,
     SONAR_WIDTH,
     VESSEL,
@@ -59,6 +60,14 @@ SPREAD_MOUNT = Mount(
     (0.0, 0.0, -0.5 * math.pi),
     'x to starboard, towards the other door',
 )
+SLANT_MOUNT = Mount(
+    SLANT_RANGE,
+    VESSEL,
+    _ORIGIN,
+    (0.0, 0.0, math.pi),
+    'midway between the towing blocks, x astern; the range is to a door, wherever that is',
+)
+DOOR_MOUNTS = (SPREAD_MOUNT, SLANT_MOUNT)
 WIDTH_MOUNT = Mount(
     SONAR_WIDTH, SONAR, _ORIGIN, (0.0, 0.0, 0.5 * math.pi), 'x to port, along the width'
 )
@@ -75,6 +84,7 @@ FRAME_SENTENCES = {
     SONAR: "headrope's centre: x down, y port, z forward",
     ECHO_SOUNDER: 'at the keel, x down',
     DOOR_SPREAD: SPREAD_MOUNT.sentence,
+    SLANT_RANGE: SLANT_MOUNT.sentence,
     SONAR_WIDTH: WIDTH_MOUNT.sentence,
 }
 """Origin and axes of each frame."""

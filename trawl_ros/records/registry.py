@@ -22,6 +22,7 @@ ECHO_SOUNDER = 'echo_sounder'
 SONAR_WIDTH = 'sonar_width'
 DOOR_FRAMES = {side: f'door_{side}' for side in SIDES}
 DOOR_SPREAD = 'door_port_spread'
+SLANT_RANGE = 'slant_range'
 
 WINCH_NAMES = tuple(f'{side}_warp' for side in SIDES)
 """Joint names of the winches, in the order of `SIDES`."""

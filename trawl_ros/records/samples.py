@@ -16,6 +16,7 @@ from trawl_ros.records.registry import (
     DOOR_SPREAD,
     ECHO_SOUNDER,
     MAP,
+    SLANT_RANGE,
     SONAR,
     SONAR_WIDTH,
     VESSEL,
@@ -364,7 +365,7 @@ def _slant_range(side: str) -> Sensor[RangeSample]:
         required=False, lively=True, leap=50.0, usual=False,
     )  # fmt: skip
     row = _range(
-        what, VESSEL, 1.0, f'Acoustic distance from the ship to the {side} door, m.',
+        what, SLANT_RANGE, 1.0, f'Acoustic distance from the ship to the {side} door, m.',
         ('door_sensor_node', 'nmea_in'), _READERS, 0.35,
         silence=ACOUSTIC_SILENCE_S, channel=channel, on_course=True,
     )  # fmt: skip

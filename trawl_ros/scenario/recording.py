@@ -9,7 +9,7 @@ from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.transforms import mounts_message, transforms_message
 from trawl_ros.messages.truth_to_messages import truth_messages
-from trawl_ros.records.frames import SPREAD_MOUNT, WIDTH_MOUNT, echo_sounder_mount
+from trawl_ros.records.frames import DOOR_MOUNTS, WIDTH_MOUNT, echo_sounder_mount
 from trawl_ros.records.topics import PICTURES
 from trawl_ros.scenario.run import Trial
 
@@ -33,7 +33,7 @@ def recorded_messages(trial: Trial) -> Iterator[tuple[int, list[TopicMessage]]]:
         if 'transforms' in scenario.record.record:
             if truth.stamp == 0:
                 sounder = echo_sounder_mount(scenario.instruments.vessel.draught_m)
-                messages.append(mounts_message(0, (sounder, SPREAD_MOUNT, WIDTH_MOUNT)))
+                messages.append(mounts_message(0, (sounder, *DOOR_MOUNTS, WIDTH_MOUNT)))
             messages.append(transforms_message(truth))
         for topic, message in map(sample_message, map(sensor_effects, suite.observe(truth))):
             if ('pictures' if topic in PICTURES else 'instruments') in scenario.record.record:
