@@ -139,6 +139,7 @@ def test_transforms_of_both_ships_are_one_tree_from_map(fleet):
         'door_starboard': 'map',
         'echo_sounder': 'base_link',
         'door_port_spread': 'door_port',
+        'slant_range': 'base_link',
     }
     assert fleet.parents == {
         f'{ship}/{frame}': parent if parent == 'map' else f'{ship}/{parent}'

@@ -91,8 +91,9 @@ FRAME_SENTENCES = {
 
 
 def frames_of(node: str, rows: Iterable[Topic]) -> tuple[str, ...]:
-    """Return the frames that a node writes into headers, from the rows of the registry."""
+    """Return the frames that a node writes, and their parents, from the rows of the registry."""
     used = {row.frame for row in rows if node in row.published_by}
+    used |= {mount.parent for mount in (*DOOR_MOUNTS, WIDTH_MOUNT) if mount.frame in used}
     return tuple(frame for frame in FRAME_SENTENCES if frame in used)
 
 
