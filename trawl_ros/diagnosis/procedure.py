@@ -133,7 +133,7 @@ def diagnose_windows(
         return replace(known, verdict=verdict, reason=decision.reason, holdout=comparison)
     misfit = min(own.fit.birge_ratio for own in _refits(base, posterior))
     best = decision.best
-    near = misfit < NEAR and best is not None and len(best.suspects) < options.largest_set
+    near = misfit < NEAR and best is not None and len(best.suspects) == 1
     if base.fit.birge_ratio > NOWHERE_NEAR and not (
         near or was_in_order(predictor, prior, deciding, baseline)
     ):
@@ -141,7 +141,7 @@ def diagnose_windows(
             known,
             reason=wrong_unit(predictor, prior, deciding)
             or f'readings are {base.fit.birge_ratio:.0f} times further from the model than their '
-            'errors explain, and no one or two causes bring them near: it is another gear',
+            'errors explain, and no single cause brings them near: it is another gear',
         )
     on_progress(_step('predicting what was kept back'))
     placebo = _placebo(posterior, best)

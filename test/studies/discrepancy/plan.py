@@ -12,7 +12,7 @@ from trawl_ros.lab.trials.hidden_effects.outside import OUTSIDE
 from trawl_ros.lab.trials.plant import FINER
 from trawl_ros.lab.trials.trial import Spec
 
-PLANTS = 2
+PLANTS = 1
 STRENGTHS = (3.0, 6.0)
 SERIES = ('clean', 'alone', 'outside', 'pair')
 SHARES = (0.2, 0.6, 0.1, 0.1)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.diagnosis.holdout import split
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.estimation.from_gear import board_prior
@@ -31,8 +31,11 @@ from trawl_ros.lab.trials.strength import Likelihood, likelihood
 from trawl_ros.lab.trials.towing import Course, quasi_steady, towed_in_time
 from trawl_ros.lab.trials.tows import PLANS, BlindTrialPlan
 from trawl_ros.lab.trials.trial import Key, Spec
+from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_usable
+from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import StepFailed
 from trawl_ros.solver.trimming.drawn_board import fastened_as
 
@@ -41,6 +44,9 @@ WRONG_BY = 0.3
 
 DROPOUTS = 0.02
 """Share of missing means, in windows in which a channel fell silent."""
+
+MOST_PLANTS, ANOTHER = 20, 1000
+"""Plants that are drawn at most, and the step from the number of one to that of the next."""
 
 LENGTH_JITTER, SPEED_JITTER, HOURS_JITTER = 4.0, 0.02, 0.05
 """Std of how far (m, m/s, h) states are from the plan."""
@@ -208,8 +214,27 @@ def _as_seen(
 
 @cache
 def _plant(gear: str, cut: MeshResolution, seed: int, number: int, plan: str) -> Plant:
+    """Draw a plant whose gear file, as a ship has it, can be towed in the model too.
+
+    Raises
+    ------
+    TrawlError
+        If none of many can.
+    """
     states = sorted({state for tow in PLANS[plan].tows for state in tow.states})
-    return draw_plant(gear, cut, seed, number, states)
+    for attempt in range(MOST_PLANTS):
+        plant = draw_plant(gear, cut, seed, number + ANOTHER * attempt, states)
+        record = fastened_as(cut.model(gear), plant.model.gear)
+        model = build_model(record).with_coefficients(board_prior(record).start)
+        near: Equilibrium | None = None
+        try:
+            for state in states:
+                near = find_equilibrium(model, OperatingPoint(state[0], *state), near)
+                require_usable(model, near)
+        except NoSteadyState:
+            continue
+        return plant
+    raise TrawlError(f'plant {number}: none of {MOST_PLANTS} gear files can be towed')
 
 
 def gear_aboard(gear: str, cut: MeshResolution, seed: int, number: int, plan: str) -> GearRecord:
