@@ -51,13 +51,15 @@ class QuantityOnHoldout:
         """Probability that errors alone make the repair miss by as much."""
         return float(chdtrc(self.number, self.after))
 
-    def is_worse(self, options: InferenceOptions) -> bool:
+    def is_worse(self, options: InferenceOptions, looks: int = 1) -> bool:
         """Return True if the repair makes this quantity worse, beyond its errors.
 
-        The odds against it are those of the cut, and errors alone seldom make it miss by as much.
+        The odds against it are those of the cut, and errors alone seldom make it miss by as much,
+        in any of so many ``looks`` at quantities.
         """
-        odds = np.log(options.cut / (1.0 - options.cut)) * options.temperature
-        return 0.5 * (self.after - self.before) > odds and self.probability < options.tail
+        odds = np.log(looks * options.cut / (1.0 - options.cut)) * options.temperature
+        unlikely = self.probability < options.tail / looks
+        return 0.5 * (self.after - self.before) > odds and unlikely
 
 
 def on_holdout(

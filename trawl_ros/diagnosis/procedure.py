@@ -151,7 +151,7 @@ def diagnose_windows(
     comparison = holdout_comparison(ready, base, refits[0], refits[1], kept_back, instead)
     if best is not None and best.refit is not None:
         held_out = on_holdout(ready, base, best.refit, kept_back, options.errors)
-        worse = [own.name for own in held_out if own.is_worse(options)]
+        worse = [own.name for own in held_out if own.is_worse(options, len(held_out))]
         decision = decide(posterior, options, worse)
         known = replace(known, held_out=held_out)
     checks, proposals = _advice(predictor, seen, posterior, decision, on_progress)

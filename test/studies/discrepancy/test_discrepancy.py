@@ -16,7 +16,7 @@ from studies.discrepancy.rows import all_sections, is_right, is_wrong
 from studies.discrepancy.trial import BlindTrial
 
 CHAIN = ('footrope_weight',), ('mouth/weight',)
-NET = ('net_weight',), ('net/netting',)
+NET = ('net_drag',), ('net/netting',)
 NOTHING = (), ()
 
 

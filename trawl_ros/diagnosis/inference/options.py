@@ -32,7 +32,7 @@ class InferenceOptions:
         Largest number of causes at once.
     """
 
-    temperature: float = 1.0
+    temperature: float = 1.5
     cut: float = 0.95
     errors: ErrorSize = field(default_factory=ErrorSize)
     unknown_rate: float = 0.03

@@ -119,7 +119,7 @@ def above(path: str) -> Iterator[str]:
 
 @dataclass
 class _Search:
-    """Search for the posterior; ``factors`` are log Bayes factors of sets, and their refits."""
+    """Search for the posterior: log Bayes factors of sets, ``first`` to first order, and refits."""
 
     predictor: Predictor
     base: Refit
@@ -127,6 +127,7 @@ class _Search:
     options: InferenceOptions
     on_progress: OnProgress
     factors: dict[Key, float] = field(default_factory=dict)
+    first: dict[Key, float] = field(default_factory=dict)
     refits: dict[Key, Refit | None] = field(default_factory=dict)
     around: dict[Key, Marginal] = field(default_factory=dict)
 
@@ -197,12 +198,21 @@ class _Search:
         waiting = [key for key in self.factors if key and key not in self.refits]
         if not waiting or len(self.refits) >= self.options.refits:
             return False
-        key = max(waiting, key=self.weight)
-        held = logsumexp([self.weight(own) for own in waiting])
-        every = logsumexp([self.weight(own) for own in self.factors])
-        if held - every < np.log(self.options.tail):
+        # What first order missed of one cause it may miss of another that explains as much.
+        missed = max(
+            (self.factors[key] / first - 1.0 for key, first in self.first.items() if first > 0.0),
+            default=0.0,
+        )
+        hoped = {
+            key: self.weight(key)
+            + max(missed, 0.0) * max(self.factors[key], 0.0) / self.options.temperature
+            for key in waiting
+        }
+        key = max(waiting, key=lambda own: hoped[own])
+        every = logsumexp([hoped.get(own, self.weight(own)) for own in self.factors])
+        if logsumexp(list(hoped.values())) - every < np.log(self.options.tail):
             return False
-        if self.weight(key) - every < np.log(self.options.least_share):
+        if hoped[key] - every < np.log(self.options.least_share):
             return False
         self._refit(key)
         return True
@@ -212,7 +222,7 @@ class _Search:
         suspects = tuple(self.screen.suspects[place] for place in key)
         self.on_progress(told(*names_of(suspects)))
         fitted = self._refitted(key, suspects)
-        self.refits[key] = fitted
+        self.refits[key], self.first[key] = fitted, self.factors[key]
         if fitted is None:
             self.factors[key] = -np.inf
         else:

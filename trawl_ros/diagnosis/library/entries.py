@@ -117,11 +117,6 @@ def library(
     )
 
 
-def is_of_gear_file(entry: Entry) -> bool:
-    """Return True for a change of keys of the gear file."""
-    return isinstance(entry.effect, GearFileChange)
-
-
 def _places(row: str, effect: Effect, wanted: tuple[str, ...]) -> tuple[int, ...]:
     names = [parameter.name for parameter in effect.parameters]
     for name in wanted:

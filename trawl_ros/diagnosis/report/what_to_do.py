@@ -54,7 +54,8 @@ def _likely(diagnosis: Diagnosis) -> list[Entry]:
         return []
     names = [name for cause in diagnosis.named for name in cause.leaves] or list(diagnosis.among)
     entries: dict[str, Entry] = {}
-    for name in sorted(names, key=lambda name: -posterior.leaves[name]):
+    first = diagnosis.best.names if diagnosis.best else ()
+    for name in sorted(names, key=lambda name: (name not in first, -posterior.leaves[name])):
         entry = posterior.entry(name).entry
         entries.setdefault(entry.check, entry)
     return list(entries.values())[:LOOKED_AT]
