@@ -9,7 +9,7 @@ import numpy as np
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.diagnosis.library.drift import drifts
-from trawl_ros.diagnosis.library.gear_file_change import GearFileChange, changes_of
+from trawl_ros.diagnosis.library.gear_file_change import changes_of
 from trawl_ros.diagnosis.library.table import NodeRecord, hypothesis_table
 from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.empirical import dictionary
