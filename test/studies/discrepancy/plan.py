@@ -12,7 +12,9 @@ from trawl_ros.lab.trials.hidden_effects.outside import OUTSIDE
 from trawl_ros.lab.trials.plant import FINER
 from trawl_ros.lab.trials.trial import Spec
 
-PLANTS = 1
+TRIALS_OF_A_PLANT = 40
+"""A plant takes long to make."""
+
 STRENGTHS = (3.0, 6.0)
 SERIES = ('clean', 'alone', 'outside', 'pair')
 SHARES = (0.2, 0.6, 0.1, 0.1)
@@ -45,8 +47,7 @@ class BlindStudyPlan:
         """Return what a trial is; another draw where that cannot be towed has another number."""
         rng = np.random.default_rng([self.seed, number, *b'spec'])
         series = str(rng.choice(SERIES, p=SHARES))
-        # Trials that follow each other have the same plant, which takes long to make.
-        plant = number * PLANTS // max(self.trials, 1)
+        plant = number // TRIALS_OF_A_PLANT
         if series == 'clean':
             return Spec(series, number, (), 0.0, (), plant, 'day')
         drawn: dict[str, list[tuple[str, ...]]] = {

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from studies.discrepancy.calibration import best_temperature, certified_cut, log_score
-from studies.discrepancy.plan import PLANTS, BlindStudyPlan
+from studies.discrepancy.plan import TRIALS_OF_A_PLANT, BlindStudyPlan
 from studies.discrepancy.rows import all_sections
 from studies.discrepancy.trial import BlindTask, BlindTrial, rules_hash, run_blind
 from studies.harness import Study, StudyResult, Work, machine_words
@@ -53,8 +53,9 @@ def method(plan: BlindStudyPlan) -> str:
     return (
         'A trial has one baseline and three tows of three steady states, of which the second is '
         'held out. The plant is not the model: '
-        f'{FINER}, and netting of another law of drag; {PLANTS} plants have boards drawn from half '
-        "of the prior's spread. Windows are worked out from steady states, with noise of which a "
+        f'{FINER}, and netting of another law of drag; boards are drawn from half of the spread of '
+        f'the prior, anew every {TRIALS_OF_A_PLANT} trials. Windows are worked out from steady '
+        'states, with noise of which a '
         f'part is autoregressive, and offsets and errors of scale {WRONG_BY:.0%} larger or smaller '
         'than stated. What is hidden is written apart from the library, with a shape drawn for '
         'each trial; its strength is a multiple of the smallest size that is detectable by the '
