@@ -41,8 +41,8 @@ FEWEST_STATES = 3
 """Number of steady states below which nothing can be tested."""
 
 NOWHERE_NEAR, NEAR = 10.0, 3.0
-"""Misfit, in std, of the boards alone from which it is another gear, unless a cause brings it below
-the second."""
+"""Noise found over noise stated, boards alone, from which it is another gear, unless a cause brings
+it below the second."""
 
 RIVALS = 4
 """Largest number of causes from which the next tow tells the likeliest."""
@@ -131,16 +131,15 @@ def diagnose_windows(
         comparison = holdout_comparison(predictor, base, None, None, kept_back)
         verdict = 'NAMED' if stuck else decision.verdict
         return replace(known, verdict=verdict, reason=decision.reason, holdout=comparison)
-    misfit = min(own.fit.birge_ratio for own in _refits(base, posterior))
+    # Noise is found by the fits, so that a misfit shows in it.
+    noise, *others = (float(np.median(own.fit.scales)) for own in _refits(base, posterior))
     best = decision.best
-    near = misfit < NEAR and best is not None and len(best.suspects) == 1
-    if base.fit.birge_ratio > NOWHERE_NEAR and not (
-        near or was_in_order(predictor, prior, deciding, baseline)
-    ):
+    near = min(others, default=noise) < NEAR and best is not None and len(best.suspects) == 1
+    if noise > NOWHERE_NEAR and not (near or was_in_order(predictor, prior, deciding, baseline)):
         return replace(
             known,
             reason=wrong_unit(predictor, prior, deciding)
-            or f'readings are {base.fit.birge_ratio:.0f} times further from the model than their '
+            or f'readings are {noise:.0f} times further from the model than their '
             'errors explain, and no single cause brings them near: it is another gear',
         )
     on_progress(_step('predicting what was kept back'))
