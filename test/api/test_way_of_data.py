@@ -30,7 +30,7 @@ STAGES = (
     ('estimation/windows/finder.py', 'feed'),
     ('diagnosis/procedure.py', 'diagnose_windows'),
     ('estimation/fit/line_search.py', 'line_search'),
-    ('diagnosis/score_test.py', 'score_test'),
+    ('diagnosis/inference/screen.py', 'screen'),
     ('diagnosis/report/writing.py', 'write_diagnosis'),
 )
 """Functions that are called one after another; the diagnosis asks for the fit."""
@@ -89,7 +89,7 @@ def test_bags_become_a_verdict_without_a_step_back(steady_tow, coarse_gear, tmp_
     gc.collect()
     with way.followed():
         diagnosis = diagnose([bag], gear=coarse_gear, out=tmp_path / 'out')
-    assert diagnosis.score_test is not None
+    assert diagnosis.screen is not None
     assert tuple(dict.fromkeys(way.stages)) == STAGES
     reading, rest = STAGES[1:3], way.stages[way.stages.index(STAGES[3]) :]
     assert not set(reading) & set(rest), 'a bag is read after its windows were handed on'

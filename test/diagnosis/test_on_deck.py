@@ -5,23 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trawl_ros.diagnosis import procedure
 from trawl_ros.diagnosis.diagnosis import values_of
+from trawl_ros.diagnosis.inference.options import InferenceOptions
+from trawl_ros.diagnosis.predictive_check import on_holdout
 from trawl_ros.diagnosis.procedure import diagnose_windows
-from trawl_ros.diagnosis.refit import refitted
 from trawl_ros.diagnosis.report.result import result
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.diagnosis.report.what_to_do import what_to_do
-from trawl_ros.diagnosis.worsening import on_holdout
-from trawl_ros.effects.registry import catalogue
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.predict import Predictor
 
 TURN = 5.0
 """Degrees that boards are turned by a shackle in a wrong hole."""
 
-RIVALS = ('board_rigging', 'net_drag', 'spread_sensor')
-"""Effects that are looked for."""
+OPTIONS = InferenceOptions()
 
 
 def turned(model, hours):
@@ -41,53 +38,41 @@ def diagnosed(coarse, hide, hidden, states=5, seed=3):
 
 
 @pytest.fixture(scope='module')
-def few():
-    """The catalogue with but few of its effects."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(procedure, 'catalogue', lambda: {name: catalogue()[name] for name in RIVALS})
-        yield
-
-
-@pytest.fixture(scope='module')
-def rerigged(coarse, hide, few):
+def rerigged(coarse, hide):
     return diagnosed(coarse, hide, hide.Hidden(gear=turned), states=3)
 
 
-def is_right(found, name, parameter, hidden):
-    """Hold a diagnosis against what was hidden."""
-    assert found.verdict == 'NAMED', found.reason
-    assert found.best.refit.names == (name,)
-    value, low, high, _ = values_of(found.best.refit)[name][parameter]
-    assert low < value < high
-    assert low < hidden < high
-
-
 def test_rerigged_boards_are_named_with_their_angle(rerigged):
-    is_right(rerigged, 'board_rigging', 'epsilon', np.radians(TURN))
-    value = values_of(rerigged.best.refit)['board_rigging']['epsilon'][0]
-    assert f'= {np.degrees(value):.3g}° (' in headline(rerigged)
-    assert 'shackle' in what_to_do(rerigged)
+    found = rerigged
+    # Three tows of three states leave other causes at the boards.
+    assert found.verdict in ('NAMED', 'AMBIGUOUS'), found.reason
+    assert found.best.names == ('board_rigging',)
+    assert found.among[0] == 'board_rigging'
+    assert found.posterior.nodes['boards/rigging'] > 0.5
+    value, low, high, _ = values_of(found.best)['board_rigging']['epsilon']
+    assert low < np.radians(TURN) < high
+    assert f'= {np.degrees(value):.3g}° (' in headline(found)
+    assert 'shackle' in what_to_do(found)
 
 
-def test_the_right_repair_makes_nothing_worse(coarse, rerigged):
-    predictor = Predictor(build_model(coarse), without=rerigged.baseline)
-    compared = on_holdout(predictor, rerigged.base, rerigged.best.refit, rerigged.split.kept_back)
+def test_the_right_repair_makes_nothing_worse(rerigged):
+    compared = rerigged.held_out
     assert {own.name for own in compared} >= {'tension', 'door_spread', 'vertical_opening'}
-    assert not any(own.worse for own in compared)
+    assert not any(own.is_worse(OPTIONS) for own in compared)
     assert all(abs(own.part - 1.0) < 3.5 * own.part_std for own in compared)
-    assert rerigged.named.held_out == compared
     assert set(result(rerigged, ())['held_out']) == {own.name for own in compared}
     assert sum(own.after for own in compared) < sum(own.before for own in compared)
 
 
 def test_a_wrong_repair_makes_something_worse(coarse, rerigged):
-    """A net of half as much drag again for what the boards do."""
+    """Boards turned by three times as much."""
     predictor = Predictor(build_model(coarse), without=rerigged.baseline)
-    (drag,) = [own for own in rerigged.score_test.wanted if own.name == 'net_drag']
-    wrong = refitted(predictor, rerigged.base, rerigged.score_test, (drag,))
-    values = np.concatenate((rerigged.base.estimate.values, [1.5, 0.0]))
-    wrong = replace(wrong, estimate=replace(wrong.estimate, values=values))
-    compared = on_holdout(predictor, rerigged.base, wrong, rerigged.split.kept_back)
-    (opening,) = [own for own in compared if own.name == 'vertical_opening']
-    assert opening.worse
-    assert opening.part + opening.part_std < 0.5
+    right = rerigged.best.refit
+    values = right.estimate.values.copy()
+    values[12] *= 3.0
+    wrong = replace(right, estimate=replace(right.estimate, values=values), predicted={})
+    kept = rerigged.split.kept_back
+    compared = on_holdout(predictor, rerigged.base, wrong, kept, OPTIONS.errors)
+    worse = [own for own in compared if own.is_worse(OPTIONS)]
+    assert worse
+    assert all(own.part + own.part_std < 0.6 for own in worse)

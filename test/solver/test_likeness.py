@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trawl_ros.diagnosis.mimics.gear_file_change import changes_of
+from trawl_ros.diagnosis.library.gear_file_change import changes_of
 from trawl_ros.effects.base.effect import Effect, Situation
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.model.assembly import forces, mass

@@ -4,21 +4,35 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from trawl_ros.diagnosis.empirical import Empirical
+import numpy as np
+
 from trawl_ros.diagnosis.holdout import HoldoutComparison, Split
+from trawl_ros.diagnosis.inference.decision import NamedCause, Verdict
+from trawl_ros.diagnosis.inference.posterior import Explanation, Posterior
+from trawl_ros.diagnosis.inference.refit import Refit
+from trawl_ros.diagnosis.inference.screen import Screen
 from trawl_ros.diagnosis.instruments import FrozenSensor
 from trawl_ros.diagnosis.locating import Where
-from trawl_ros.diagnosis.mimicry import Mimic
-from trawl_ros.diagnosis.naming import Named
 from trawl_ros.diagnosis.next_tow import Proposal
-from trawl_ros.diagnosis.refit import Refit
-from trawl_ros.diagnosis.rules import Verdict
-from trawl_ros.diagnosis.score_test import ScoreTest
-from trawl_ros.diagnosis.weighing import Weighed
+from trawl_ros.diagnosis.predictive_check import QuantityOnHoldout
 from trawl_ros.gear.records import GearRecord
 
 if TYPE_CHECKING:
     from trawl_ros.diagnosis.onset.tows import OnsetsInTow
+
+
+@dataclass(frozen=True)
+class BoardsMoved:
+    """How far the fitted boards are from those of the gear file.
+
+    ``std`` is the largest departure of a coefficient, in std of the prior, ``coefficient`` its
+    name; ``spread`` and ``depth`` (m) are the mean changes of door spread and door depth by it.
+    """
+
+    std: float
+    coefficient: str
+    spread: float
+    depth: float
 
 
 @dataclass(frozen=True)
@@ -37,9 +51,17 @@ class Diagnosis:
         Those in which nothing was looked for.
     split
         Windows that decided, and those kept back.
-    base, score_test, named, where, holdout
-        Boards alone; test for effects; naming; patterns and jumps of residuals; errors on what was
-        kept back. None, or empty, where it did not come to that.
+    base, screen, posterior
+        Boards alone; all hypotheses to first order; their probabilities. None where it did not
+        come to that.
+    named, among
+        Leaves and nodes that are named; leaves that are not excluded.
+    best
+        Explanation whose sizes are given: of what is named, or else the likeliest.
+    moved
+        How far the boards moved from the gear file.
+    where, holdout, held_out
+        Patterns of residuals; errors on what was kept back, by channel and by quantity.
     remarks
         On instruments that need no model to be seen at fault.
     frozen
@@ -47,11 +69,6 @@ class Diagnosis:
     checks, proposals
         Next steps where something cannot be told apart: without towing, in sentences, and
         tows.
-    empirical
-        The term that explains what no effect does, where there is one.
-    mimics
-        Changes of the gear file that explain as much as the best effect, or where nothing is named
-        more; the likeliest first.
     onsets
         Onsets in the tows; empty where that was not asked for.
 
@@ -59,7 +76,7 @@ class Diagnosis:
     --------
     >>> import trawl_ros
     >>> diagnosis = trawl_ros.diagnose(['tow_1'], gear='coarse.yaml')
-    >>> diagnosis.tows, diagnosis.named is None
+    >>> diagnosis.tows, diagnosis.posterior is None
     (('tow_1',), True)
     """
 
@@ -70,53 +87,54 @@ class Diagnosis:
     baseline: frozenset[int]
     split: Split
     base: Refit | None = None
-    score_test: ScoreTest | None = None
-    named: Named | None = None
+    screen: Screen | None = None
+    posterior: Posterior | None = None
+    named: tuple[NamedCause, ...] = ()
+    among: tuple[str, ...] = ()
+    best: Explanation | None = None
+    moved: BoardsMoved | None = None
     where: tuple[Where, ...] = ()
     holdout: HoldoutComparison | None = None
+    held_out: tuple[QuantityOnHoldout, ...] = ()
     remarks: tuple[str, ...] = ()
     frozen: tuple[FrozenSensor, ...] = ()
     checks: tuple[str, ...] = ()
     proposals: tuple[Proposal, ...] = ()
-    empirical: Empirical | None = None
-    mimics: tuple[Mimic, ...] = ()
     onsets: 'tuple[OnsetsInTow, ...]' = ()
 
     @property
-    def best(self) -> Weighed | None:
-        """The best effect, or two, where something was detected and refitted."""
-        return self.named.weighed[0] if self.named and self.named.weighed else None
+    def repair(self) -> Explanation | None:
+        """Repair of the gear: the explanation that is named."""
+        return self.best if self.verdict == 'NAMED' else None
 
-    @property
-    def added(self) -> Weighed | None:
-        """Addition to the boards' refit: an empirical term, or else the best effect."""
-        return self.best if self.empirical is None else self.empirical.weighed
-
-    @property
-    def added_as(self) -> str:
-        """Designation of the addition in sentences."""
-        return 'the effect' if self.empirical is None else 'the empirical term'
-
-    @property
-    def repair(self) -> Weighed | None:
-        """Repair of the gear: the effect that is named, or an empirical term."""
-        return self.added if self.empirical or self.verdict == 'NAMED' else None
+    def lowered(self, explanation: Explanation) -> tuple[float, float]:
+        """Return by how much a refitted explanation lowers χ² and BIC of the boards alone."""
+        assert self.base is not None
+        assert self.screen is not None
+        assert explanation.refit is not None
+        scales = self.screen.fit.scales
+        delta = 2.0 * (self.base.cost(scales) - explanation.refit.cost(scales))
+        readings = sum(len(linear.channels) for linear in self.screen.fit.windows)
+        return delta, delta - explanation.refit.number * float(np.log(readings))
 
 
 def unread(gear: GearRecord, tows: Sequence[str], reason: str) -> Diagnosis:
-    """The diagnosis of recordings without a single steady window."""
+    """Return the diagnosis of recordings without a single steady window."""
     nothing = Split((), (), 'state')
     return Diagnosis('NOT_TESTABLE', reason, gear, tuple(tows), frozenset(), nothing)
 
 
-def values_of(refit: Refit) -> Mapping[str, Mapping[str, tuple[float, float, float, str]]]:
-    """Effect → parameter → value, both ends of its interval, and unit."""
-    by_effect: dict[str, dict[str, tuple[float, float, float, str]]] = {}
-    estimate = refit.estimate
-    for candidate, block in zip(refit.wanted, refit.fit.prior.blocks('effect'), strict=True):
-        own = by_effect.setdefault(candidate.name, {})
-        for parameter, place in zip(candidate.effect.parameters, block, strict=True):
+def values_of(best: Explanation) -> Mapping[str, Mapping[str, tuple[float, float, float, str]]]:
+    """Return cause → parameter → value, both ends of its interval, and unit."""
+    by_cause: dict[str, dict[str, tuple[float, float, float, str]]] = {}
+    assert best.refit is not None
+    estimate = best.refit.estimate
+    blocks = best.refit.fit.prior.blocks('effect')
+    for suspect, block in zip(best.suspects, blocks, strict=True):
+        own = by_cause.setdefault(suspect.entry.name, {})
+        parameters = suspect.entry.effect.parameters
+        for parameter, place in zip(parameters, block, strict=True):
             numbers = (estimate.values[place], estimate.low[place], estimate.high[place])
             value, low, high = map(float, numbers)
             own[parameter.name] = (value, low, high, parameter.unit)
-    return by_effect
+    return by_cause

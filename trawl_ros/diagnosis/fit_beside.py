@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
-from trawl_ros.diagnosis.candidates import Candidate, candidates, extended, lower_edges, signatures
-from trawl_ros.diagnosis.refit import OPTIONS, Refit, fit_boards, likelier, refit
+from trawl_ros.diagnosis.inference.candidates import Candidate, extended, lower_edges, signatures
+from trawl_ros.diagnosis.inference.refit import OPTIONS, Refit, converged, fit_boards, likelier
 from trawl_ros.effects.effect_set import ActiveEffect
 from trawl_ros.estimation.fit.estimator import POOR, Estimator
 from trawl_ros.estimation.fit.linearised import Linearised
@@ -44,11 +44,11 @@ def fit_beside(
     base = fit_boards(without, prior, windows)
     if base is None:
         return with_effects
-    wanted = tuple(_nearest(effect, without, base) for effect in added)
+    wanted = tuple(_nearest(effect, base) for effect in added)
     values = np.concatenate([effect.values for effect in added])
     columns = signatures(without, base.fit.windows, wanted)
     windows_extended = extended(base.fit, wanted, columns, OPTIONS).windows
-    free = refit(without, base.fit, wanted, values, windows_extended, OPTIONS)
+    free = converged(without, base, wanted, values, windows_extended)
     if free is None:
         return with_effects
     estimator = Estimator(predictor, prior, OBSERVABLES, OPTIONS)
@@ -59,10 +59,13 @@ def fit_beside(
     return likelier(with_effects, None if estimate is None else Refit((), estimator, estimate))
 
 
-def _nearest(active: ActiveEffect, predictor: Predictor, base: Refit) -> Candidate:
+def _nearest(active: ActiveEffect, base: Refit) -> Candidate:
     """Candidate of an effect, at the start nearest to its found values."""
     depths = lower_edges(base.fit.windows)
-    places = candidates({active.name: active.effect}, predictor, depths)
+    places = [
+        Candidate(active.effect, start, place)
+        for place, start in enumerate(active.effect.starts(depths))
+    ]
 
     def away(candidate: Candidate) -> float:
         return float(np.linalg.norm((candidate.start - active.values) / candidate.scale))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.diagnosis.inference.refit import Refit
 from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
 from trawl_ros.estimation.report.residuals import residuals
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -130,6 +130,7 @@ def holdout_comparison(
     best: Refit | None,
     placebo: Refit | None,
     windows: Sequence[SteadyWindow],
+    instead: str | None = None,
 ) -> HoldoutComparison | None:
     """Compare refits on the windows kept back; None where refits are none.
 
@@ -141,6 +142,8 @@ def holdout_comparison(
         Refits of the boards alone, with the best effect, and with a wrong one.
     windows
         Kept back from all of them.
+    instead
+        Name of the wrong one.
     """
     if not windows:
         return None
@@ -150,7 +153,7 @@ def holdout_comparison(
         before=next(compared),
         after=None if best is None else next(compared),
         placebo=None if placebo is None else next(compared),
-        instead=None if placebo is None else placebo.names[0],
+        instead=instead,
     )
 
 

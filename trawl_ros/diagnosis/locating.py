@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.diagnosis.evidence import BLIND
-from trawl_ros.diagnosis.patterns import SHAPES, ResidualPattern
-from trawl_ros.diagnosis.score_test import ScoreTest
+from trawl_ros.diagnosis.inference.marginal import BLIND
+from trawl_ros.diagnosis.inference.patterns import SHAPES, ResidualPattern
+from trawl_ros.diagnosis.inference.screen import Screen
 
 TELLING = 3.0
 """Standard deviations from where a pattern is worth a word."""
@@ -30,24 +30,24 @@ class Where:
     z: float
 
 
-def located(test: ScoreTest) -> tuple[Where, ...]:
+def located(test: Screen) -> tuple[Where, ...]:
     """All patterns, the most significant first."""
     places = []
     for place, pattern in enumerate(test.patterns, test.number):
-        information = float(test.evidence.information[place, place])
+        information = float(test.marginal.information[place, place])
         if information <= BLIND:
             continue
-        z = float(test.evidence.score[place]) / float(np.sqrt(information))
+        z = float(test.marginal.score[place]) / float(np.sqrt(information))
         places.append(Where(pattern.channel, pattern.shape, _region(test, pattern, z), z))
     return tuple(sorted(places, key=lambda where: -abs(where.z)))
 
 
-def telling(test: ScoreTest) -> tuple[Where, ...]:
+def telling(test: Screen) -> tuple[Where, ...]:
     """Significant patterns."""
     return tuple(where for where in located(test) if abs(where.z) >= TELLING)
 
 
-def map_of(test: ScoreTest) -> tuple[list[str], list[str], FloatArray]:
+def map_of(test: Screen) -> tuple[list[str], list[str], FloatArray]:
     """Channels, variables and z (channels, variables), NaN where a pattern is unobservable."""
     z_of = {(where.channel, where.variable): where.z for where in located(test)}
     channels = list(dict.fromkeys(pattern.channel for pattern in test.patterns))
@@ -56,7 +56,7 @@ def map_of(test: ScoreTest) -> tuple[list[str], list[str], FloatArray]:
     return channels, variables, np.array(z)
 
 
-def _region(test: ScoreTest, pattern: ResidualPattern, z: float) -> str:
+def _region(test: Screen, pattern: ResidualPattern, z: float) -> str:
     words = DIRECTIONS.get(pattern.shape)
     if words is not None:
         return words[0] if z > 0.0 else words[1]

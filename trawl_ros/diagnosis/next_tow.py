@@ -8,10 +8,10 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.diagnosis.candidates import Candidate, signatures
-from trawl_ros.diagnosis.evidence import Evidence, evidence
-from trawl_ros.diagnosis.rules import LEAST_BIC
-from trawl_ros.diagnosis.score_test import ScoreTest
+from trawl_ros.diagnosis.inference.blocks import blocks_of
+from trawl_ros.diagnosis.inference.candidates import signatures
+from trawl_ros.diagnosis.inference.marginal import Marginal, marginal
+from trawl_ros.diagnosis.inference.screen import Screen, Suspect, ready_for
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
 from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -24,6 +24,9 @@ STATES = 3
 
 STATE_MINUTES = 20.0
 """A state takes so long, with what the gear takes to settle."""
+
+TELLING = 10.0
+"""χ² by which one cause must be better than another to be told from it (odds of 150)."""
 
 WORTH = 1.0
 """Tows of less χ² per hour are not proposed: no weather makes them tell."""
@@ -66,20 +69,20 @@ class Proposal:
             f'{lengths[0]:.0f} m of warp'
         )
         track = ', on the reciprocal track' if self.reciprocal else ''
-        tells = 'should tell' if self.per_hour >= LEAST_BIC else 'helps to tell'
+        tells = 'should tell' if self.per_hour >= TELLING else 'helps to tell'
         return (
             f'Tow {what}{track}: an hour of it {tells} the best effect from its nearest rival '
-            f'(χ² {self.per_hour:.1f} more, where {LEAST_BIC:g} are enough; so far '
+            f'(χ² {self.per_hour:.1f} more, where {TELLING:g} are enough; so far '
             f'{self.before:.1f}).'
         )
 
 
 def propose(
     predictor: Predictor,
-    test: ScoreTest,
-    best: Candidate,
+    screen: Screen,
+    best: Suspect,
     values: FloatArray,
-    rivals: Sequence[Candidate],
+    rivals: Sequence[Suspect],
 ) -> tuple[Proposal, ...]:
     """Propose tows like those at hand, and those on the reciprocal track.
 
@@ -87,12 +90,12 @@ def propose(
     ----------
     predictor
         The gear as it is believed.
-    test
-        The score test.
+    screen
+        All hypotheses to first order.
     best, values
-        The effect, and its values (m,) as they were found.
+        The cause, and its values (m,) as they were found.
     rivals
-        Effects from which it is to be told.
+        Causes from which it is to be told.
 
     Returns
     -------
@@ -101,58 +104,63 @@ def propose(
     """
     if not rivals:
         return ()
-    now = evidence(test.fit, test.columns, test.units)
-    before = _apart(test, now, best, values, rivals)
-    known = dict(zip(_places(test), test.fit.windows, strict=True))
+    every = (best, *rivals)
+    wanted = [suspect.candidate for suspect in every]
+    ready = ready_for(predictor, [suspect.entry.effect for suspect in every])
+    units = np.concatenate([candidate.scale for candidate in wanted])
+    places = [place for suspect in every for place in suspect.block]
+    columns = [own[:, places] * units for own in screen.columns]
+    scaled = (values - best.candidate.start) / best.candidate.scale
+
+    def apart(windows: Sequence[Linearised], more: Sequence[FloatArray]) -> float:
+        fit = replace(screen.fit, windows=(*screen.fit.windows, *windows))
+        both = [*columns, *(own * units for own in more)]
+        return _apart(marginal(blocks_of(fit, both, errors=screen.errors)), scaled, rivals)
+
+    before = apart((), ())
+    known = dict(zip(_places(screen), screen.fit.windows, strict=True))
     solved: dict[tuple[float, float], Linearised] = {}
-    another = 1 + max(linear.window.tow for linear in test.fit.windows)
+    another = 1 + max(linear.window.tow for linear in screen.fit.windows)
     proposals = []
-    for states in _tows(test):
+    for states in _tows(screen):
         for reciprocal in (False, True):
             try:
-                states_solved = [_solved(predictor, test, known, solved, state) for state in states]
+                states_solved = [
+                    _solved(predictor, screen, known, solved, state) for state in states
+                ]
             except NoSteadyState:
                 continue
             windows = [
                 _window_of(linear, another, number, reciprocal)
                 for number, linear in enumerate(states_solved)
             ]
-            fit = replace(test.fit, windows=(*test.fit.windows, *windows))
-            more = signatures(predictor, windows, test.wanted)
-            after = evidence(fit, [*test.columns, *more], test.units)
-            apart = _apart(test, after, best, values, rivals)
-            proposals.append(Proposal(states, reciprocal, before, apart))
+            after = apart(windows, signatures(ready, windows, wanted))
+            proposals.append(Proposal(states, reciprocal, before, after))
     ranked = sorted(proposals, key=lambda proposal: -proposal.per_hour)
     return tuple(proposal for proposal in ranked[:TOLD] if proposal.per_hour > WORTH)
 
 
-def _apart(
-    test: ScoreTest,
-    evidence_of_tow: Evidence,
-    best: Candidate,
-    values: FloatArray,
-    rivals: Sequence[Candidate],
-) -> float:
-    """Least χ² of an effect that a rival cannot explain."""
-    block = list(test.block(best))
-    scaled = (values - best.start) / best.scale
-    left = []
+def _apart(found: Marginal, scaled: FloatArray, rivals: Sequence[Suspect]) -> float:
+    """Least χ² of the first cause, of these values in std, that a rival cannot explain."""
+    own, first, left = range(len(scaled)), len(scaled), []
     for rival in rivals:
-        rest = evidence_of_tow.without(test.block(rival)).information[np.ix_(block, block)]
+        block = range(first, first + len(rival.block))
+        rest = found.without(block).of(own).information
         left.append(float(scaled @ rest @ scaled))
+        first = block.stop
     return min(left)
 
 
-def _places(test: ScoreTest) -> list[tuple[float, float, int]]:
+def _places(screen: Screen) -> list[tuple[float, float, int]]:
     return [
         (float(linear.inputs[:2].mean()), float(linear.inputs[2]), linear.window.index)
-        for linear in test.fit.windows
+        for linear in screen.fit.windows
     ]
 
 
-def _tows(test: ScoreTest) -> list[tuple[tuple[float, float], ...]]:
+def _tows(screen: Screen) -> list[tuple[tuple[float, float], ...]]:
     """Tows of speed steps at both ends of the warp's range, and warp steps at both speeds'."""
-    lengths, speeds, _ = (np.array(column) for column in zip(*_places(test), strict=True))
+    lengths, speeds, _ = (np.array(column) for column in zip(*_places(screen), strict=True))
     steps = [np.linspace(values.min(), values.max(), STATES) for values in (lengths, speeds)]
     tows = [tuple((float(end), float(u)) for u in steps[1]) for end in steps[0][[0, -1]]]
     tows += [tuple((float(w), float(end)) for w in steps[0]) for end in steps[1][[0, -1]]]
@@ -161,7 +169,7 @@ def _tows(test: ScoreTest) -> list[tuple[tuple[float, float], ...]]:
 
 def _solved(
     predictor: Predictor,
-    test: ScoreTest,
+    screen: Screen,
     known: dict[tuple[float, float, int], Linearised],
     solved: dict[tuple[float, float], Linearised],
     state: tuple[float, float],
@@ -179,7 +187,7 @@ def _solved(
     }  # fmt: skip
     asked = {'port_length': length, 'starboard_length': length, 'speed': speed}
     window = replace(nearest.window, means={**nearest.window.means, **asked}, noise=noise)
-    board = test.fit.coefficients[test.fit.prior.slice_of('coefficients')]
+    board = screen.fit.coefficients[screen.fit.prior.slice_of('coefficients')]
     linear = linearise(predictor, OBSERVABLES, window, board, (nearest.state, None), even=False)
     means = {**window.means, **dict(zip(linear.channels, map(float, linear.values), strict=True))}
     bias = {name: CHANNELS[name].bias_std(mean) for name, mean in means.items()}

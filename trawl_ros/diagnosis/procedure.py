@@ -1,16 +1,21 @@
-"""Procedure of a diagnosis: detect, locate, name, repair, and compare on held-out windows."""
+"""Procedure of a diagnosis: fit, screen, infer, decide, and compare on held-out windows."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from trawl_ros.core.errors import GearError
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
-from trawl_ros.diagnosis.changes import changes
-from trawl_ros.diagnosis.diagnosis import Diagnosis
-from trawl_ros.diagnosis.empirical import empirical
+from trawl_ros.diagnosis.diagnosis import BoardsMoved, Diagnosis
 from trawl_ros.diagnosis.fit_beside import fit_beside
 from trawl_ros.diagnosis.holdout import holdout_comparison, split
+from trawl_ros.diagnosis.inference.candidates import lower_edges
+from trawl_ros.diagnosis.inference.decision import Decision, decide
+from trawl_ros.diagnosis.inference.options import InferenceOptions
+from trawl_ros.diagnosis.inference.posterior import Explanation, Posterior, infer
+from trawl_ros.diagnosis.inference.refit import Refit, fit_boards, was_in_order
+from trawl_ros.diagnosis.inference.screen import Screen, ready_for, screen
 from trawl_ros.diagnosis.instruments import (
     frozen,
     over_ground,
@@ -19,31 +24,28 @@ from trawl_ros.diagnosis.instruments import (
     without,
     wrong_unit,
 )
+from trawl_ros.diagnosis.library.entries import library
 from trawl_ros.diagnosis.locating import telling
-from trawl_ros.diagnosis.mimicry import Mimic, in_another_form, mimics_of, with_mimics
-from trawl_ros.diagnosis.naming import Named, name
 from trawl_ros.diagnosis.next_tow import Proposal, propose
-from trawl_ros.diagnosis.refit import REFITTING, Refit, fit_boards, refitted, was_in_order
-from trawl_ros.diagnosis.rules import (
-    FEWEST_STATES,
-    LEAST_BIC,
-    NEAR,
-    NOWHERE_NEAR,
-    judge_beside,
-    judge_form,
-)
-from trawl_ros.diagnosis.score_test import ScoreTest, score_test
-from trawl_ros.diagnosis.weighing import Weighed, left_over
+from trawl_ros.diagnosis.predictive_check import on_holdout
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.predict import Predictor
 
-PLACEBO_STEPS = 3
-"""A wrong effect has no place to come to rest at, and what it is worth is seen before."""
+FEWEST_STATES = 3
+"""Number of steady states below which nothing can be tested."""
+
+NOWHERE_NEAR, NEAR = 10.0, 3.0
+"""Noise found over noise stated, boards alone, from which it is another gear, unless a cause brings
+it below the second."""
+
+RIVALS = 4
+"""Largest number of causes from which the next tow tells the likeliest."""
 
 
 def diagnose_windows(
@@ -52,6 +54,7 @@ def diagnose_windows(
     tows: Sequence[str],
     baseline: frozenset[int] = frozenset(),
     on_progress: OnProgress = ignore,
+    options: InferenceOptions | None = None,
 ) -> Diagnosis:
     """Diagnose the missing effects of a gear's model from steady windows.
 
@@ -67,12 +70,15 @@ def diagnose_windows(
         Tows of when the gear was known to be in order.
     on_progress
         Called at each step of the diagnosis.
+    options
+        Options of the inference; the frozen ones if None.
 
     Raises
     ------
     GearError
         If the gear file switches on an effect that there is not.
     """
+    options = options or InferenceOptions()
     stuck = frozen(windows, tows)
     windows, fallen = standing(without(windows, stuck), tows)
     halves = split(windows, baseline)
@@ -103,144 +109,122 @@ def diagnose_windows(
             or 'most of the windows have no steady state in this model: it is another gear, or far '
             'from how it was towed',
         )
-    on_progress(_step('looking for effects'))
+    on_progress(_step('comparing hypotheses'))
     effects, ruled_out = possible(
         catalogue(), [window for window in windows if window.tow not in baseline]
     )
-    known = replace(known, remarks=(*remarks, *ruled_out))
-    test = score_test(predictor, base.fit, effects)
-    where = sorted((*telling(test), *changes(test)), key=lambda located: -abs(located.z))
-    known = replace(known, base=base, score_test=test, where=tuple(where))
-    if not test.detected:
+    entries = library(gear, effects)
+    depths = lower_edges(base.fit.windows)
+    seen = screen(predictor, base.fit, entries, depths, options.errors)
+    posterior = infer(predictor, base, seen, options, on_progress)
+    known = replace(
+        known,
+        remarks=(*remarks, *ruled_out),
+        base=base,
+        screen=seen,
+        posterior=posterior,
+        moved=_moved(predictor, base),
+        where=telling(seen),
+    )
+    decision = decide(posterior, options)
+    if decision.verdict == 'NO_DISCREPANCY':
+        comparison = holdout_comparison(predictor, base, None, None, kept_back)
+        verdict = 'NAMED' if stuck else decision.verdict
+        return replace(known, verdict=verdict, reason=decision.reason, holdout=comparison)
+    # Noise is found by the fits, so that a misfit shows in it.
+    noise, *others = (float(np.median(own.fit.scales)) for own in _refits(base, posterior))
+    best = decision.best
+    near = min(others, default=noise) < NEAR and best is not None and len(best.suspects) == 1
+    if noise > NOWHERE_NEAR and not (near or was_in_order(predictor, prior, deciding, baseline)):
         return replace(
             known,
-            verdict='NAMED' if stuck else 'NO_DISCREPANCY',
-            reason=f'nothing in the {"other " if stuck else ""}readings is beyond what boards '
-            'and errors explain',
-            holdout=holdout_comparison(predictor, base, None, None, kept_back),
+            reason=wrong_unit(predictor, prior, deciding)
+            or f'readings are {noise:.0f} times further from the model than their '
+            'errors explain, and no single cause brings them near: it is another gear',
         )
-    named = name(predictor, base, test, kept_back, on_progress)
-    if named.lost:
-        on_progress(_step('leaving out what has no steady state with the best effect'))
-        remaining = tuple(window for window in deciding if window.index not in named.lost)
-        if (again := fit(predictor, prior, remaining)) is not None:
-            base, test = again, score_test(predictor, again.fit, effects)
-            known = replace(known, base=base, score_test=test)
-            named = name(predictor, base, test, kept_back, on_progress)
-    named, mimics = _beside_mimics(predictor, base, test, named, on_progress)
-    best = named.weighed[0].refit if named.weighed else None
-    placebo, term = None, None
-    if named.verdict == 'UNKNOWN':
-        on_progress(_step('looking for an empirical term'))
-        term = empirical(predictor, base, test)
-        if term is not None:
-            placebo, best = best, term.weighed.refit
-        noise, left = (float(np.median(refit.fit.scales)) for refit in (base, best or base))
-        nowhere_near = noise > NOWHERE_NEAR and left > NEAR
-        if nowhere_near and not was_in_order(predictor, prior, deciding, baseline):
-            return replace(
-                known,
-                reason=wrong_unit(predictor, prior, deciding)
-                or f'readings are {noise:.0f} times further from the model than their errors '
-                'explain, and no effect brings them near: it is another gear',
-            )
     on_progress(_step('predicting what was kept back'))
-    if best is not None and placebo is None:
-        placebo = _placebo(predictor, base, test, named)
-    comparison = holdout_comparison(predictor, base, best, placebo, kept_back)
-    on_progress(_step('looking for the next tow'))
-    checks, proposals = _advice(predictor, test, named, mimics)
+    placebo = _placebo(posterior, best)
+    ready = ready_for(predictor, [entry.effect for entry in entries])
+    refits = [None if own is None else own.refit for own in (best, placebo)]
+    instead = None if placebo is None else ' and '.join(placebo.names)
+    comparison = holdout_comparison(ready, base, refits[0], refits[1], kept_back, instead)
+    if best is not None and best.refit is not None:
+        held_out = on_holdout(ready, base, best.refit, kept_back, options.errors)
+        worse = [own.name for own in held_out if own.is_worse(options, len(held_out))]
+        decision = decide(posterior, options, worse)
+        known = replace(known, held_out=held_out)
+    checks, proposals = _advice(predictor, seen, posterior, decision, on_progress)
     return replace(
         known,
-        verdict=named.verdict,
-        reason=named.reason,
-        named=named,
+        verdict=decision.verdict,
+        reason=decision.reason,
+        named=decision.named,
+        among=decision.among,
+        best=best,
         holdout=comparison,
         checks=checks,
         proposals=proposals,
-        empirical=term,
-        mimics=mimics,
     )
-
-
-def _beside_mimics(
-    predictor: Predictor, base: Refit, test: ScoreTest, named: Named, on_progress: OnProgress
-) -> tuple[Named, tuple[Mimic, ...]]:
-    """Hold a name against the library of mimics; without a name, look for what explains more."""
-    if not named.weighed:
-        return named, ()
-    on_progress(_step('holding it against other causes'))
-    unknown = named.verdict == 'UNKNOWN'
-    mimics = mimics_of(
-        predictor, base, test, named.weighed[0],
-        others=(*named.rivals, *named.alike), better=unknown, on_progress=on_progress,
-    )  # fmt: skip
-    if (form := in_another_form(named.weighed, mimics)) is not None:
-        return _as_form(base, test, named, *form)
-    if unknown:
-        return named, mimics
-    words = {str(mimic): mimic.over for mimic in mimics}
-    verdict, reason = judge_beside(named.verdict, named.reason, words)
-    if verdict == 'UNKNOWN':
-        mimics = tuple(mimic for mimic in mimics if mimic.over > LEAST_BIC)
-    return replace(named, verdict=verdict, reason=reason), mimics
-
-
-def _as_form(
-    base: Refit, test: ScoreTest, named: Named, best: Weighed, form: Mimic
-) -> tuple[Named, tuple[Mimic, ...]]:
-    """Result with an effect first of which a change of the gear file is another form."""
-    verdict, reason = judge_form(str(form))
-    rest = tuple(entry for entry in named.weighed if entry is not best)
-    left = left_over(base, test, best.refit)
-    return Named(verdict, reason, (best, *rest), (), (), left), (form,)
 
 
 def _step(detail: str) -> WorkProgress:
     return WorkProgress('diagnosing', detail=detail)
 
 
+def _refits(base: Refit, posterior: Posterior) -> list[Refit]:
+    return [base, *(own.refit for own in posterior.explanations if own.refit is not None)]
+
+
+def _moved(predictor: Predictor, base: Refit) -> BoardsMoved:
+    """Return how far the boards moved from the gear file, and what that changes."""
+    board = base.fit.prior.slice_of('coefficients')
+    away = base.fit.coefficients[board] - predictor.model.coefficients
+    in_std = away / base.fit.prior.std[board]
+    largest = int(np.argmax(np.abs(in_std)))
+    changed: dict[str, list[float]] = {'spread': [], 'depth': []}
+    for linear in base.fit.windows:
+        change = linear.by_coefficients[:, board] @ away
+        for name, own in zip(linear.channels, change, strict=True):
+            if name == 'door_spread':
+                changed['spread'].append(float(own))
+            elif name.endswith('door_depth'):
+                changed['depth'].append(float(own))
+    spread, depth = (float(np.mean(own)) if own else 0.0 for own in changed.values())
+    return BoardsMoved(float(in_std[largest]), COEFFICIENTS[largest], spread, depth)
+
+
+def _placebo(posterior: Posterior, best: Explanation | None) -> Explanation | None:
+    """Return the likeliest refitted explanation with none of the nodes of the best one."""
+    if best is None:
+        return None
+    taken = {suspect.entry.node.path for suspect in best.suspects}
+    for own in posterior.explanations:
+        paths = {suspect.entry.node.path for suspect in own.suspects}
+        if own.refit is not None and not own.unknown and not paths & taken:
+            return own
+    return None
+
+
 def _advice(
-    predictor: Predictor, test: ScoreTest, named: Named, mimics: Sequence[Mimic]
+    predictor: Predictor,
+    seen: Screen,
+    posterior: Posterior,
+    decision: Decision,
+    on_progress: OnProgress,
 ) -> tuple[tuple[str, ...], tuple[Proposal, ...]]:
-    """Direct checks and tows that separate the best effect from those not excluded, and from
-    changes of gear file or instruments that explain as much.
-    """
-    others = {*named.rivals, *named.alike}
-    beside = [
-        mimic
-        for mimic in (mimics if named.verdict == 'AMBIGUOUS' else ())
-        if not set(named.weighed[0].refit.names) & set(mimic.change.same_as)
-    ]
-    if not named.weighed or not (others or beside):
+    """Return checks on deck and tows that tell the likeliest cause from those not excluded."""
+    best = decision.best
+    if best is None or best.refit is None or decision.verdict != 'AMBIGUOUS':
         return (), ()
-    best = named.weighed[0].refit
-    rivals = [candidate for candidate in test.wanted if candidate.name in others]
-    if beside:
-        predictor, test = with_mimics(predictor, test, beside)
-        rivals += [mimic.refit.wanted[0] for mimic in beside]
-    candidate = best.wanted[0]
-    values = best.values[: len(candidate.start)]
-    proposals = propose(predictor, test, candidate, values, rivals)
-    direct = [
-        candidate.effect.direct for candidate in (*best.wanted, *rivals) if candidate.effect.direct
-    ]
-    return tuple(dict.fromkeys(direct)), proposals
-
-
-def _placebo(predictor: Predictor, base: Refit, test: ScoreTest, named: Named) -> Refit | None:
-    """Placebo: the best effect that is neither named nor of its class.
-
-    Where none is named, only one that was refitted already will do.
-    """
-    if not named.weighed:
-        return None
-    taken = {*named.weighed[0].refit.names, *named.alike}
-    for entry in named.weighed[1:]:
-        if not taken & set(entry.refit.names):
-            return entry.refit
-    rest = [candidate for candidate in test.wanted if candidate.name not in taken]
-    if not rest or named.verdict == 'UNKNOWN':
-        return None
-    options = replace(REFITTING, iterations_final=PLACEBO_STEPS)
-    return refitted(predictor, base, test, (max(rest, key=test.penalised),), options, rounds=1)
+    leaves = [name for name in posterior.leaves if name in decision.among]
+    suspects = [posterior.entry(name) for name in leaves]
+    checks = tuple(dict.fromkeys(suspect.entry.check for suspect in suspects))
+    first = best.suspects[0]
+    rivals = [own for own in suspects if own.entry.name not in best.names][:RIVALS]
+    values = best.refit.values[: len(first.block)]
+    on_progress(_step('looking for the next tow'))
+    try:
+        return checks, propose(predictor, seen, first, values, rivals)
+    except GearError:
+        # A gear that cannot be built so is none to be towed.
+        return checks, ()

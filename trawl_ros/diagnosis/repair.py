@@ -9,8 +9,9 @@ import yaml
 
 from trawl_ros.core.version import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
-from trawl_ros.diagnosis.refit import Refit
-from trawl_ros.diagnosis.weighing import Weighed
+from trawl_ros.diagnosis.inference.posterior import Explanation
+from trawl_ros.diagnosis.library.drift import Drift
+from trawl_ros.diagnosis.library.gear_file_change import GearFileChange, changed
 from trawl_ros.gear.boards import CoefficientsRecord
 from trawl_ros.gear.records import EffectRecord, GearRecord, ProvenanceRecord, SourceRecord
 
@@ -41,51 +42,57 @@ def source(bag: Path) -> SourceBag:
 
 
 def repaired(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> GearRecord | None:
-    """The gear with boards as refitted and in it the effect that is named, or two, or an empirical
-    term.
+    """Return the gear with boards as refitted and in it what is named.
 
-    None where nothing has been named and no term does: a gear file is to hold what is known.
+    None where nothing has been named, or a gear file cannot hold it: a drift of an instrument, or
+    ropes of one side that differ.
     """
     best = diagnosis.repair
-    if best is None:
+    if best is None or best.refit is None:
         return None
-    return with_refitted_effects(diagnosis.gear, best.refit, _provenance(best, sources))
+    for suspect in best.suspects:
+        effect = suspect.entry.effect
+        if isinstance(effect, Drift):
+            return None
+        if isinstance(effect, GearFileChange) and effect.side is not None:
+            return None
+    return _with_causes(diagnosis, best, sources)
 
 
-def with_refitted_effects(gear: GearRecord, refit: Refit, origin: ProvenanceRecord) -> GearRecord:
-    """Gear with the boards and effects of a refit."""
+def _with_causes(
+    diagnosis: Diagnosis, best: Explanation, sources: Sequence[SourceBag]
+) -> GearRecord:
+    """Gear with the boards and causes of an explanation."""
+    assert best.refit is not None
+    gear, refit = diagnosis.gear, best.refit
     board = refit.fit.prior.unpacked(refit.estimate.values, 'coefficients')
-    taken = set(refit.names)
-    effects = tuple(effect for effect in gear.effects if effect.name not in taken)
-    effects += tuple(
-        EffectRecord(
-            name=name,
-            values={parameter: value for parameter, (value, *_) in values.items()},
-            provenance=origin,
-        )
-        for name, values in values_of(refit).items()
-    )
-    if gear.pair is not None:
-        return gear.model_copy(update={'effects': effects})
-    coefficients = CoefficientsRecord(**board)
-    return gear.model_copy(
-        update={
-            'board': gear.board.model_copy(update={'coefficients': coefficients}),
-            'effects': effects,
-        }
-    )
-
-
-def _provenance(best: Weighed, sources: Sequence[SourceBag]) -> ProvenanceRecord:
-    return ProvenanceRecord(
+    delta_chi2, delta_bic = diagnosis.lowered(best)
+    origin = ProvenanceRecord(
         found_by=f'trawl diagnose {__version__}',
         bags=tuple(SourceRecord(bag=bag.bag, sha256=bag.sha256) for bag in sources),
         evidence={
-            'delta_chi2': best.delta_chi2,
-            'delta_bic': best.delta_bic,
-            'held_out_gain': best.gain[0],
-            'bootstrap_share': best.share,
+            'delta_chi2': delta_chi2,
+            'delta_bic': delta_bic,
+            'log_bayes_factor': best.log_factor,
+            'probability': min(own.probability for own in diagnosis.named),
         },
+    )
+    effects: list[EffectRecord] = []
+    for suspect, values in zip(best.suspects, values_of(best).values(), strict=True):
+        effect = suspect.entry.effect
+        sizes = {name: value for name, (value, *_) in values.items()}
+        if isinstance(effect, GearFileChange):
+            gear = changed(gear, effect.record, sizes['change'])
+        else:
+            effects.append(EffectRecord(name=effect.name, values=sizes, provenance=origin))
+    taken = {effect.name for effect in effects}
+    kept = [effect for effect in gear.effects if effect.name not in taken]
+    gear = gear.model_copy(update={'effects': (*kept, *effects)})
+    if gear.pair is not None:
+        return gear
+    coefficients = CoefficientsRecord(**board)
+    return gear.model_copy(
+        update={'board': gear.board.model_copy(update={'coefficients': coefficients})}
     )
 
 

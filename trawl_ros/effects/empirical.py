@@ -50,7 +50,7 @@ class EmpiricalTerm(Effect):
 @cache
 def dictionary() -> Mapping[str, EmpiricalTerm]:
     """Return all empirical terms by name."""
-    terms = (*board_terms(), *rope_terms(), *sensor_terms())
+    terms = (*board_terms(), *rope_terms(), *sensor_terms(), *profile_terms())
     return MappingProxyType({term.name: term for term in terms})
 
 
@@ -297,6 +297,43 @@ def sensor_terms() -> Iterator[EmpiricalTerm]:
                 channel=name,
                 by=by,
             )
+
+
+PROFILE_DEPTHS_M = (50.0, 150.0, 300.0)
+"""Depths of the knots of a current profile; it is zero at the surface and constant below them."""
+
+
+@dataclass(frozen=True)
+class CurrentProfile(EmpiricalTerm):
+    """Current of any profile in depth, piecewise linear between knots, along or across the track.
+
+    ``along`` is True for a current along the track, False for one to the left of it.
+    """
+
+    along: bool = True
+
+    def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
+        """Return the gear model in the current."""
+        way = at.along if self.along else at.across
+        currents = np.concatenate(([0.0], values))[:, None] * way
+        depths = np.array([0.0, *PROFILE_DEPTHS_M])
+        return replace(model, water=model.water.with_more_current(depths, currents))
+
+
+def profile_terms() -> Iterator[EmpiricalTerm]:
+    """Yield currents of any profile in depth."""
+    for name, words, along in (('along', 'along', True), ('across', 'to the left of', False)):
+        yield CurrentProfile(
+            name=f'current_profile_{name}',
+            sentence=f'The water moves {words} the track, differently at each depth.',
+            parameters=tuple(
+                Parameter(f'at_{depth:.0f}_m', 'm/s', 0.0, -0.8, 0.8, 0.1)
+                for depth in PROFILE_DEPTHS_M
+            ),
+            excited_by='warp length; reciprocal tracks reverse it',
+            reading=f'a current {words} the track that differs with depth',
+            along=along,
+        )
 
 
 def usual_error(name: str) -> float:

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from trawl_ros.effects.base.effect import Situation
-from trawl_ros.effects.registry import catalogue
 from trawl_ros.lab.trials.diagnosing import _of_bags
 from trawl_ros.lab.trials.hidden_effects.inside import INSIDE
-from trawl_ros.lab.trials.making import likelihood_of, make, proposed, tow_on
+from trawl_ros.lab.trials.making import make
 from trawl_ros.lab.trials.plant import FINER, draw_plant
 from trawl_ros.lab.trials.readings import AS_STATED
 from trawl_ros.lab.trials.recording import record_tows
@@ -19,9 +18,8 @@ from trawl_ros.lab.trials.towing import (
     settling_time,
     towed_in_time,
 )
-from trawl_ros.lab.trials.tows import FULL, POOR, PlannedTow
+from trawl_ros.lab.trials.tows import FULL, PlannedTow
 from trawl_ros.lab.trials.trial import Spec
-from trawl_ros.lab.trials.verdicts import classes
 from trawl_ros.records.channels import MEASURED
 from trawl_ros.records.observables import OBSERVABLES
 
@@ -117,33 +115,3 @@ def test_what_is_hidden_acts_in_time_as_in_steady_states(plant):
     back = Situation((300.0, 300.0, 2.4), heading=np.pi, sense=-1.0)
     east = there.gear(plant.model, back).water.current(depth)
     np.testing.assert_allclose(east, -there.gear(plant.model, at).water.current(depth), atol=1e-12)
-
-
-def test_the_first_tow_that_is_proposed_is_towed_on(poor):
-    spec, made = poor
-    states = [{'warp_length': 300.0, 'speed': 2.2}, {'warp_length': 600.0, 'speed': 2.2}]
-    said = {
-        'next_tow': [
-            {'sentence': 'LinearisedState at the marks.', 'states': []},
-            {'sentence': 'Tow.', 'states': states, 'reciprocal': True},
-        ]
-    }
-    tow = proposed(said)
-    assert tow == PlannedTow(((300.0, 2.2), (600.0, 2.2)), eastward=False)
-    assert proposed({'next_tow': []}) is None
-    key, windows = tow_on(spec, GEAR, FINER, SEED, made.windows, tow)
-    assert key.spec.series == 'followed'
-    assert windows[: len(made.windows)] == made.windows
-    more = windows[len(made.windows) :]
-    assert [window.tow for window in more] == [len(POOR.tows)] * 2
-    assert len({window.index for window in windows}) == len(windows)
-    assert all(window.sense == -1.0 for window in more)
-
-
-def test_classes_come_from_the_plan_alone():
-    found = classes(likelihood_of(GEAR, FINER, SEED, 0, 'full'))
-    assert set(found) == {name for name, effect in catalogue().items() if effect.fitted}
-    assert 'speed_log' in found['heave']
-    assert found['tension_cell'] == ('tension_cell',)
-    alike = classes(likelihood_of(GEAR, FINER, SEED, 0, 'poor'))
-    assert 'counter_scale' in alike['counter_offset']

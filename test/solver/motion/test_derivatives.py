@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from trawl_ros.diagnosis.candidates import Candidate
+from trawl_ros.diagnosis.inference.candidates import Candidate
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import Scheme

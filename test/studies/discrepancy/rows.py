@@ -1,291 +1,185 @@
-"""Figures of the blind tests: how often verdicts are right, and what a repair is worth.
+"""Figures of the blind trials."""
 
-Of a trial only its key and ``diagnosis.json`` are known here.
-"""
-
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
+from scipy.stats import binomtest
 
-from studies.discrepancy.deck import FEW, cause_rows, deck_rows, is_fair
-from studies.discrepancy.worth import repair_rows
-from studies.rates import rate
-from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
-from trawl_ros.lab.report.page import Section
-from trawl_ros.lab.trials.trial import Scored
-from trawl_ros.lab.trials.verdicts import (
-    Classes,
-    both_named,
-    checked,
-    chosen,
-    found_of_three,
-    hidden_names,
-    named_right,
-    names_of,
-    one_named,
-    parted,
-    reported,
-    right,
-    same_said,
-    set_size,
-    verdict_word,
-    wrong_named,
+from studies.discrepancy.calibration import (
+    calibration_error,
+    certified_cut,
+    claim,
+    of_truth,
 )
+from studies.discrepancy.trial import BlindTrial
+from studies.rates import rate
+from trawl_ros.diagnosis.inference.options import InferenceOptions
+from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, between
+from trawl_ros.lab.report.page import Section
+from trawl_ros.lab.trials.answers import holds, right_leaves, right_nodes
+
+TOP_BINS = ((0.0, 0.5), (0.5, 0.7), (0.7, 0.85), (0.85, 0.95), (0.95, 0.99), (0.99, 1.01))
 
 
-def all_sections(trials: Sequence[Scored], classes: Classes) -> list[Section]:
-    """All sections with their rows."""
+def all_sections(trials: Sequence[BlindTrial]) -> list[Section]:
+    """Return all sections with their rows."""
+    tested = [trial for trial in trials if trial.verdict]
     return [
-        Section('Clean trials', clean_rows(trials)),
-        Section('Effects of the catalogue', inside_rows(trials, classes)),
-        Section('Effects outside the catalogue', outside_rows(trials)),
-        Section('Causes on deck', deck_rows(trials, classes)),
-        Section('Two and three effects at once', pair_rows(trials, classes)),
-        Section('Trials that cannot tell', poor_rows(trials, classes)),
-        Section('Full bags', bag_rows(trials, classes)),
-        Section('The repair', repair_rows(trials, classes)),
-        Section('Each effect', effect_rows(trials, classes)),
-        Section('Each cause on deck', cause_rows(trials, classes)),
-        Section('Shuffled keys', shuffled_rows(trials, classes)),
+        Section('Names', name_rows(tested)),
+        Section('Probabilities', probability_rows(tested)),
+        Section('Sizes and repairs', size_rows(tested)),
+        Section('Each cause', cause_rows(tested)),
     ]
 
 
-def clean_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
-    """Rate of false alarms."""
-    clean = chosen(trials, 'clean')
-    return [
-        rate('clean trials with an alarm', [verdict_word(t) != 'NO_DISCREPANCY' for t in clean],
-              most=2.0),
-        rate('clean trials with a single name', [verdict_word(t) == 'NAMED' for t in clean],
-              most=0.5),
-    ]  # fmt: skip
+def is_wrong(trial: BlindTrial) -> bool:
+    """Return True if a leaf or node is named that does not hold what is hidden."""
+    return any(not holds(path, trial.effects) for path in trial.named)
 
 
-def inside_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
-    """Detection and naming of effects in the catalogue."""
-    inside = chosen(trials, 'inside')
-    decided = [trial for trial in inside if verdict_word(trial) in ('NAMED', 'AMBIGUOUS')]
-    third = chosen(trials, 'inside', 3.0)
-    sizes = [
-        set_size(trial, classes) for trial in third if verdict_word(trial) in ('NAMED', 'AMBIGUOUS')
-    ]
-    testable = {hidden_names(trial)[0] for trial in third}
-    rows = [
-        MeasuredValue(
-            'effects that can be tested at 3 times the smallest detectable size',
-            float(len(testable)),
-            target=at_least(12.0),
-            note=', '.join(sorted(testable)),
-        ),
-        *(
-            rate(
-                f'detected at {strength:g} times',
-                [
-                    verdict_word(t) not in ('NO_DISCREPANCY', 'NOT_TESTABLE')
-                    for t in chosen(trials, 'inside', strength)
-                ],
-                least=95.0 if strength < 2.0 else None,
-            )
-            for strength in (1.5, 3.0, 6.0)
-        ),
-        rate(
-            'truth within the set that is reported',
-            [right(t, reported(t), classes) for t in decided],
-            least=98.0,
-            note='of trials NAMED or AMBIGUOUS',
-        ),
-        *(
-            rate(
-                f'right single name, or class, at {strength:g} times',
-                [named_right(t, classes) for t in chosen(trials, 'inside', strength)],
-                least=least,
-            )
-            for strength, least in ((1.5, None), (3.0, 93.0), (6.0, 97.0))
-        ),
-        MeasuredValue(
-            'mean size of the set at 3 times',
-            float(np.mean(sizes)) if sizes else np.nan,
-            target=at_most(1.5),
-            note='classes not excluded, of trials NAMED or AMBIGUOUS',
-        ),
-        rate(
-            'wrong single name',
-            [verdict_word(t) == 'NAMED' and not right(t, names_of(t), classes) for t in inside],
-            most=1.0,
-        ),
-        *(
-            rate(
-                f'UNKNOWN at {strength:g} times',
-                [verdict_word(t) == 'UNKNOWN' for t in chosen(trials, 'inside', strength)],
-            )
-            for strength in (3.0, 6.0)
-        ),
-    ]
-    return rows
-
-
-def outside_rows(trials: Sequence[Scored]) -> list[MeasuredValue]:
-    """Verdicts on effects outside the catalogue."""
-    outside = chosen(trials, 'outside')
-    kinds = {hidden_names(trial)[0] for trial in outside}
-    return [
-        MeasuredValue(
-            'kinds of effects outside the catalogue',
-            float(len(kinds)),
-            target=at_least(10.0),
-            note=', '.join(sorted(kinds)),
-        ),
-        *(
-            rate(
-                f'UNKNOWN at {strength:g} times',
-                [verdict_word(t) == 'UNKNOWN' for t in chosen(trials, 'outside', strength)],
-                least=least,
-            )
-            for strength, least in ((6.0, 85.0), (10.0, 95.0))
-        ),
-        rate('wrong name', [verdict_word(t) == 'NAMED' for t in outside], most=5.0),
-        rate('several names', [verdict_word(t) == 'AMBIGUOUS' for t in outside]),
-    ]
-
-
-def pair_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
-    """Verdicts on two and on three effects at once."""
-    pairs, triples = chosen(trials, 'pair'), chosen(trials, 'triple')
-    return [
-        rate(
-            'both of two effects at 3 times',
-            [both_named(trial, classes) for trial in pairs],
-            least=50.0,
-        ),
-        rate('one of two effects named alone', [one_named(trial, classes) for trial in pairs]),
-        rate(
-            'two of three effects at least, and no other, at 3 times',
-            [found_of_three(trial, classes) for trial in triples],
-            least=60.0,
-        ),
-        rate(
-            'anything else named where three are hidden',
-            [wrong_named(trial, classes) for trial in triples],
-        ),
-    ]
-
-
-def poor_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
-    """Tows so much alike that effects are too, and the proposed next tow."""
-    poor, followed = chosen(trials, 'poor'), chosen(trials, 'followed')
-    alone = [
-        trial for trial in poor if verdict_word(trial) == 'NAMED' and len(reported(trial)) == 1
-    ]
-    decided = [trial for trial in poor if verdict_word(trial) in ('NAMED', 'AMBIGUOUS')]
-    return [
-        rate('too poor a trial: a single name, and a wrong one',
-             [trial in alone and not right(trial, names_of(trial), classes) for trial in poor]),
-        rate('too poor a trial: truth within the set that is reported',
-             [right(trial, reported(trial), classes) for trial in decided]),
-        rate('the proposed tow parts what could not be told apart', [parted(t) for t in followed],
-             note='of poor trials with several names, or a class, and a proposal'),
-        rate('the proposed tow, or a check on deck, parts what could not be told apart',
-             [parted(t) or checked(t, classes) for t in followed], least=85.0,
-             note='the right name is among those left, and all of these but one have a check'),
-    ]  # fmt: skip
-
-
-def bag_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
-    """Agreement of verdicts from full bags with those from simulated windows."""
-    by_number: Mapping[int, Scored] = {
-        trial.key['spec']['number']: trial
-        for trial in trials
-        if trial.key['spec']['form'] == 'windows'
-        and trial.key['spec']['series'] != 'followed'
-        and trial.diagnosis is not None
-    }
-    rows = []
-    for form, words in (('bags', 'one state after the other'), ('dynamic', 'towed in time')):
-        own = [t for t in trials if t.key['spec']['form'] == form and t.diagnosis is not None]
-        pairs = [
-            (trial, by_number[like])
-            for trial in own
-            if (like := trial.key['spec']['like']) in by_number
-        ]
-        listed = ', '.join(
-            f'{"+".join(hidden_names(trial)) or "clean"} {verdict_word(other)} '
-            f'{verdict_word(trial)}'
-            for trial, other in pairs
-            if not same_said(trial, other)
+def is_right(trial: BlindTrial) -> bool:
+    """Return True if all that is hidden is named, by its leaf or its node, and nothing else."""
+    if is_wrong(trial) or not trial.named:
+        return False
+    return all(
+        any(
+            path in right_nodes(cause) or path.rpartition('/')[2] in right_leaves(cause)
+            for path in trial.named
         )
-        note = f'; others: {listed}' if listed else ''
-        if form == 'dynamic':
-            rows += _right_rows(own, classes)
-        rows.append(
-            rate(
-                f'full bags, {words}: verdict and name as of its windows',
-                [same_said(trial, other) for trial, other in pairs],
-                note=f'same effect, size and plant, other noise{note}',
-            )
-        )
-    return rows
-
-
-def _right_rows(own: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
-    """Verdicts on trials of a day that were towed in time."""
-    listed = '; '.join(
-        f'{trial.key["spec"]["plan"]}, {"+".join(hidden_names(trial)) or "nothing"} '
-        f'{trial.key["spec"]["strength"]:g} ×: {verdict_word(trial)} '
-        f'{" or ".join(sorted(reported(trial)))}'.strip()
-        for trial in own
+        for cause in trial.effects
     )
+
+
+def _by_leaf(trial: BlindTrial) -> bool:
+    return is_right(trial) and all(
+        any(path.rpartition('/')[2] in right_leaves(cause) for path in trial.named)
+        for cause in trial.effects
+    )
+
+
+def name_rows(trials: Sequence[BlindTrial]) -> list[MeasuredValue]:
+    """Return how often names are right, wrong or withheld."""
+    clean = [own for own in trials if own.series == 'clean']
+    outside = [own for own in trials if own.series == 'outside']
+    pairs = [own for own in trials if own.series == 'pair']
+    alone = [own for own in trials if own.series == 'alone']
+    decided = [own for own in alone if own.among]
+    sets = [len(own.among) for own in decided]
+    first = [own for own in alone if own.leaves]
+    rows = [
+        rate('clean trials with an alarm',
+             [own.verdict not in ('NO_DISCREPANCY', 'NOT_TESTABLE') for own in clean], most=1.0),
+        rate('clean trials with a name', [own.verdict == 'NAMED' for own in clean], most=0.0),
+        rate('wrong name, of all trials', [is_wrong(own) for own in trials], most=1.0,
+             note=', '.join(f'{"+".join(own.effects) or "nothing"} as {" and ".join(own.named)}'
+                            for own in trials if is_wrong(own)) or 'none'),
+    ]  # fmt: skip
+    for strength, least, leaf in ((3.0, 80.0, 60.0), (6.0, 92.0, 75.0)):
+        own = [trial for trial in alone if trial.strength == strength]
+        rows += [
+            rate(f'right leaf, or node of one check, at {strength:g} times',
+                 [is_right(trial) for trial in own], least=least),
+            rate(f'right leaf at {strength:g} times', [_by_leaf(trial) for trial in own],
+                 least=leaf),
+        ]  # fmt: skip
     return [
-        rate('towed in time: verdict right', [_right_at_sea(trial, classes) for trial in own],
-             least=92.0, note='nothing where nothing is hidden; else the right name or class, or '
-             f'it in a set of at most {FEW}: {listed}'),
-        rate('towed in time: a wrong name', [wrong_named(trial, classes) for trial in own]),
+        *rows,
+        rate('right leaf the likeliest',
+             [next(iter(own.leaves or {})) in right_leaves(own.effects[0]) for own in first]),
+        rate('right leaf within the reported set',
+             [bool(set(own.among) & set(right_leaves(own.effects[0]))) for own in decided],
+             least=97.0),
+        MeasuredValue('median number of leaves in the set',
+                      float(np.median(sets)) if sets else np.nan, '', at_most(3.0)),
+        rate('outside the library at 6 times: UNKNOWN, or nothing above 0.5',
+             [own.verdict == 'UNKNOWN' or max((own.nodes or {'': 0.0}).values(), default=0.0) < 0.5
+              for own in outside], least=85.0),
+        rate('both of two causes', [is_right(own) for own in pairs], least=70.0),
+        *(rate(f'{verdict} of what is hidden', [own.verdict == verdict for own in alone])
+          for verdict in ('NAMED', 'AMBIGUOUS', 'UNKNOWN', 'NO_DISCREPANCY', 'NOT_TESTABLE')),
     ]  # fmt: skip
 
 
-def _right_at_sea(trial: Scored, classes: Classes) -> bool:
-    if not hidden_names(trial):
-        return verdict_word(trial) == 'NO_DISCREPANCY'
-    return verdict_word(trial) != 'UNKNOWN' and is_fair(trial, classes)
-
-
-def effect_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
-    """Right names of each effect at 3 and 6 times together."""
+def probability_rows(trials: Sequence[BlindTrial]) -> list[MeasuredValue]:
+    """Return the reliability of probabilities, and the certificate of the cut."""
+    options = InferenceOptions()
+    own = [trial for trial in trials if trial.explanations]
+    claims = [claim(trial, options.temperature) for trial in own]
     rows = []
-    for name in sorted({hidden_names(trial)[0] for trial in chosen(trials, 'inside')}):
-        own = [
-            trial
-            for trial in chosen(trials, 'inside')
-            if hidden_names(trial)[0] == name and trial.key['spec']['strength'] >= 3.0
-        ]
-        if own:
-            verdicts = [verdict_word(trial) for trial in own]
-            counted = ', '.join(
-                f'{kind} {verdicts.count(kind)}' for kind in dict.fromkeys(verdicts)
+    for low, high in TOP_BINS:
+        some = [one for one in claims if low <= one.probability < high]
+        if not some:
+            continue
+        right, said = sum(one.right for one in some), np.mean([one.probability for one in some])
+        ends = binomtest(right, len(some)).proportion_ci(method='exact')
+        rows.append(
+            MeasuredValue(
+                f'likeliest claim of probability {low:g} to {min(high, 1.0):g}: right',
+                100.0 * right / len(some), '%', None,
+                f'{right} of {len(some)}, where {said:.1%} were said; '
+                f'{"inside" if ends.low <= said <= ends.high else "outside"} the interval',
+                100.0 * ends.low, 100.0 * ends.high,
             )
-            words = name.replace('_', ' ')
-            rows.append(
-                rate(
-                    f'{words}: right name',
-                    [named_right(trial, classes) for trial in own],
-                    note=counted,
-                )
-            )
-    return rows
-
-
-def shuffled_rows(trials: Sequence[Scored], classes: Classes) -> list[MeasuredValue]:
-    """Score by chance: the same with keys that belong to other trials."""
-    inside = [trial for trial in chosen(trials, 'inside') if trial.key['spec']['strength'] >= 3.0]
-    if len(inside) < 2:
-        return []
-    order = np.random.default_rng(0).permutation(len(inside))
-    mixed = [
-        Scored(inside[other].key, trial.diagnosis)
-        for trial, other in zip(inside, order, strict=True)
-    ]
-    kinds = len({hidden_names(trial)[0] for trial in inside})
+        )  # fmt: skip
+    cut = certified_cut(own, options.temperature)
     return [
-        rate('right single name at 3 and 6 times, keys shuffled',
-              [named_right(trial, classes) for trial in mixed],
-              note=f'one in {kinds} by chance, more where classes are wide'),
+        *rows,
+        MeasuredValue('debiased calibration error', calibration_error(claims), '', at_most(0.05)),
+        MeasuredValue('mean log probability of what is hidden',
+                      float(np.mean([np.log(max(of_truth(one, options.temperature), 1e-6))
+                                     for one in own])), ''),
+        MeasuredValue('lowest cut certified on these trials', np.nan if cut is None else cut, '',
+                      None, f'the cut in use is {options.cut:g}, the temperature '
+                      f'{options.temperature:g}'),
     ]  # fmt: skip
+
+
+def size_rows(trials: Sequence[BlindTrial]) -> list[MeasuredValue]:
+    """Return what sizes and repairs are worth."""
+    covered = []
+    for own in trials:
+        if own.series != 'alone' or own.verdict != 'NAMED' or not own.values:
+            continue
+        for name, (_, low, high) in own.values.items():
+            neutral = 1.0 if name == 'warp_strumming' else 0.0
+            same_unit = name == own.effects[0] or name in KEYS_AS_HIDDEN
+            if name in right_leaves(own.effects[0]) and same_unit:
+                covered.append(low <= own.sizes[0] + neutral <= high)
+    errors = [own.coefficient_error for own in trials
+              if own.coefficient_error is not None and is_right(own)]  # fmt: skip
+    removed = [own.removed for own in trials if own.removed is not None and is_right(own)]
+    seconds = [own.seconds for own in trials]
+    return [
+        rate('sizes within their 95 % interval', covered, least=92.0,
+             note='causes of one number in the unit of what is hidden'),
+        rate('repairs that worsen a held-out channel more than the plant itself',
+             [own.worse for own in trials if own.worse is not None], most=3.0),
+        MeasuredValue('error of the coefficients, named rightly over not', _median(errors), '',
+                      at_most(0.35)),
+        MeasuredValue('excess error on held-out tows that is removed', 100.0 * _median(removed),
+                      '%', at_least(80.0)),
+        MeasuredValue('time of a diagnosis, median', _median(seconds), 's', between(None, 30.0)),
+    ]  # fmt: skip
+
+
+KEYS_AS_HIDDEN = ('board_area', 'footrope_weight', 'headrope_length', 'kite_weight', 'front_twine',
+                  'board_mass', 'warp_diameter', 'twine', 'warp_hole_ahead')  # fmt: skip
+"""Changes of the gear file that are hidden in this very form."""
+
+
+def _median(values: Sequence[float]) -> float:
+    return float(np.median(values)) if values else float('nan')
+
+
+def cause_rows(trials: Sequence[BlindTrial]) -> list[MeasuredValue]:
+    """Return what was said of each hidden cause."""
+    rows = []
+    for cause in sorted({'+'.join(own.effects) for own in trials if own.effects}):
+        some = [own for own in trials if '+'.join(own.effects) == cause]
+        said = '; '.join(
+            f'{own.strength:g} ×: {own.verdict} '
+            f'{" and ".join(own.named) or ", ".join(list(own.leaves or {})[:3])}'
+            for own in some
+        )
+        rows.append(rate(f'{cause}: right', [is_right(own) for own in some], note=said))
+    return rows

@@ -1,7 +1,7 @@
 """Smallest detectable sizes of effects, by steady windows alone and by all of the tows.
 
-A size is detectable as in a diagnosis: in 80 % of trials it exceeds what chance makes of a gear in
-order in one of a hundred (`trawl_ros.diagnosis.evidence`). The limit is that of the windows.
+A size is detectable that exceeds in 80 % of trials what chance makes of a gear in order in one of a
+hundred, in any of about thirty looks.
 """
 
 import math
@@ -17,10 +17,10 @@ from studies.motion.plant import COURSE, towed_samples
 from studies.motion.trial import MotionTask
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.diagnosis.evidence import detectable
-from trawl_ros.diagnosis.refit import fit_boards
-from trawl_ros.diagnosis.rules import DOUBT
-from trawl_ros.diagnosis.score_test import score_test
+from trawl_ros.diagnosis.inference.blocks import blocks_of
+from trawl_ros.diagnosis.inference.candidates import Candidate, lower_edges, signatures
+from trawl_ros.diagnosis.inference.marginal import marginal
+from trawl_ros.diagnosis.inference.refit import fit_boards
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.bag_motion import STRETCHES
 from trawl_ros.estimation.from_gear import board_prior, finder_for, predictor_for
@@ -33,6 +33,7 @@ from trawl_ros.estimation.windows.records import Rejections, SteadyWindow
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.trials.linearised_plant import State
+from trawl_ros.lab.trials.strength import AS_KNOWN, SIGMAS
 from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample
 from trawl_ros.report.rendering import number as in_digits
@@ -160,9 +161,16 @@ def run_detectable(task: MotionTask) -> DetectableSizes:
     base = fit_boards(predictor, prior, read.windows)
     if base is None or len(base.fit.windows) < len(read.windows):
         raise TrawlError(f'{task.name}: windows of the model have no steady state in it')
-    test = score_test(predictor, base.fit, catalogue())
+    depths = lower_edges(base.fit.windows)
     # Of an effect that is looked for in several places the first, as in the table of a diagnosis.
-    wanted = tuple(candidate for candidate in test.wanted if not candidate.place)
+    wanted = tuple(
+        Candidate(effect, effect.starts(depths)[0])
+        for effect in catalogue().values()
+        if effect.fitted
+    )
+    columns = signatures(predictor, base.fit.windows, wanted)
+    units = np.concatenate([candidate.scale for candidate in wanted])
+    still = marginal(blocks_of(base.fit, [own * units for own in columns], errors=AS_KNOWN))
     coefficients = base.fit.coefficients[: len(prior)]
     gear = ExaminedGear(predictor.model, predictor.fixed, coefficients, prior, wanted)
     moving = information_in_motion(gear, read.moving)
@@ -174,13 +182,9 @@ def run_detectable(task: MotionTask) -> DetectableSizes:
         effects=[one.name for one in wanted for _ in one.effect.parameters],
         values=[own.name for own in parameters],
         units=[own.unit for own in parameters],
-        windows=_numbers(size for candidate in wanted for size in test.detectable(candidate)),
-        motion=_numbers(
-            gear.units * detectable(moving.evidence, range(number), test.limit, DOUBT)
-        ),
-        added_mass=_numbers(
-            ADDED_MASS_STD * detectable(moving.added_mass, range(1), test.limit, DOUBT)
-        )[0],
+        windows=_numbers(gear.units * SIGMAS * still.std(range(number))),
+        motion=_numbers(gear.units * SIGMAS * moving.evidence.std(range(number))),
+        added_mass=_numbers(ADDED_MASS_STD * SIGMAS * moving.added_mass.std(range(1)))[0],
         number_of_windows=len(read.windows),
         counted_s=moving.counted_s,
         cpu_s=time.process_time() - begun,

@@ -11,8 +11,8 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray, Slice
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.diagnosis.candidates import Candidate
-from trawl_ros.diagnosis.evidence import Evidence
+from trawl_ros.diagnosis.inference.candidates import Candidate
+from trawl_ros.diagnosis.inference.marginal import Marginal
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.towing import WatchedGear
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
@@ -78,8 +78,8 @@ class MotionInformation:
         Time of all stretches that count.
     """
 
-    evidence: Evidence
-    added_mass: Evidence
+    evidence: Marginal
+    added_mass: Marginal
     counted_s: float
 
 
@@ -164,11 +164,11 @@ def _by_values(watched: WatchedGear, linear: LinearisedTow) -> FloatArray:
     return found
 
 
-def _evidence(matrix: FloatArray, wanted: IntArray, rest: IntArray) -> Evidence:
-    """Evidence on the wanted of all parameters, by information (s, s) on all; the rest have their
+def _evidence(matrix: FloatArray, wanted: IntArray, rest: IntArray) -> Marginal:
+    """Marginal on the wanted of all parameters, by information (s, s) on all; the rest have their
     prior, of std 1, and are eliminated.
     """
     across = matrix[np.ix_(rest, wanted)]
     known = matrix[np.ix_(rest, rest)] + np.eye(len(rest))
     left = matrix[np.ix_(wanted, wanted)] - across.T @ np.linalg.solve(known, across)
-    return Evidence(left, np.zeros(len(wanted)), np.zeros((0, len(wanted))))
+    return Marginal(left, np.zeros(len(wanted)))

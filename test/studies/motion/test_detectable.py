@@ -9,7 +9,7 @@ from studies.harness import Work, run_study
 from studies.motion.detectable import DetectableSizes, detectable_rows
 from studies.motion.detectable_information import ExaminedGear, information_in_motion
 from studies.motion.study import STUDY, MotionPlan
-from trawl_ros.diagnosis.candidates import Candidate
+from trawl_ros.diagnosis.inference.candidates import Candidate
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.effects.effect_set import NO_EFFECTS
 from trawl_ros.effects.registry import catalogue

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
-from trawl_ros.diagnosis.mimics.drift import Drift, drifts
+from trawl_ros.diagnosis.library.drift import Drift, drifts
 from trawl_ros.effects.base.effect import WIDE, Effect, Parameter, Readings, Situation
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.motion.stretches import STEADY_ONLY

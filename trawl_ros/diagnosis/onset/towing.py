@@ -7,7 +7,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.diagnosis.mimics.drift import Drift
+from trawl_ros.diagnosis.library.drift import Drift
 from trawl_ros.diagnosis.onset.candidates import WATCHED, AtOneHour
 from trawl_ros.diagnosis.onset.stretches import LIVE, LastStretch
 from trawl_ros.effects.base.effect import Effect, Situation, sense

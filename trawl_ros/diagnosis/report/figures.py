@@ -3,50 +3,43 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from trawl_ros.diagnosis.candidates import Candidate
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.holdout import HoldoutComparison
+from trawl_ros.diagnosis.inference.posterior import Posterior
+from trawl_ros.diagnosis.inference.screen import Screen
 from trawl_ros.diagnosis.locating import map_of
-from trawl_ros.diagnosis.score_test import ScoreTest
 from trawl_ros.report.pictures import Drawing
 from trawl_ros.report.style import FAINT, MEASURED, SECOND, quiet
 
-WHERE, WHICH, GAP = 'Where they disagree', 'Which effect it is', 'The gap before and after'
+WHERE, WHICH, GAP = 'Where they disagree', 'Which cause it is', 'The gap before and after'
 BEGAN = 'What began on the way'
 
 MOST_Z = 8.0
 """Colours end here."""
 
 BARS = 10
-"""So many effects are drawn."""
+"""Number of causes that are drawn."""
 
 
 def drawings(diagnosis: Diagnosis) -> list[Drawing]:
     """Return all figures for which there are numbers."""
-    test, holdout, made = diagnosis.score_test, diagnosis.holdout, []
-    if test is not None:
+    holdout, made = diagnosis.holdout, []
+    if diagnosis.posterior is not None:
+        made.append(
+            Drawing(
+                'probabilities',
+                'Probability that each cause is there (dark), and any cause of its place in the '
+                'tree of causes, which one check on deck finds (light).',
+                probability_figure(diagnosis.posterior), WHICH,
+            )
+        )  # fmt: skip
+    if diagnosis.screen is not None:
         made.append(
             Drawing(
                 'where',
                 'Residuals of each channel with each variable, in standard deviations of what '
                 'errors would make, boards and calibration taken out. Red: grows with it.',
-                where_figure(test), WHERE,
-            )
-        )  # fmt: skip
-        made.append(
-            Drawing(
-                'evidence',
-                'By how much each effect alone lowers χ² of all readings, boards refitted (dark: '
-                'solved anew, light: to first order).',
-                evidence_figure(diagnosis, test), WHICH,
-            )
-        )  # fmt: skip
-        made.append(
-            Drawing(
-                'confusable',
-                'How alike effects look in these tows: the cosine of what the one changes with '
-                'the nearest that the other could do. 1 cannot be told apart.',
-                confusable_figure(test), WHICH,
+                where_figure(diagnosis.screen), WHERE,
             )
         )  # fmt: skip
     if holdout is not None and holdout.after is not None:
@@ -55,16 +48,16 @@ def drawings(diagnosis: Diagnosis) -> list[Drawing]:
                 'gap',
                 'Errors of each channel on what was kept back, over what errors of instruments '
                 'alone would make (1): boards refitted alone, with '
-                f'{diagnosis.added_as}, and with the best other effect.',
-                gap_figure(holdout, diagnosis.added_as), GAP,
+                'the likeliest cause, and with the best other one.',
+                gap_figure(holdout, 'the likeliest cause'), GAP,
             )
         )  # fmt: skip
-    if diagnosis.base is not None and diagnosis.added is not None:
+    if diagnosis.base is not None and diagnosis.best is not None:
         made.append(
             Drawing(
                 'coefficients',
                 'The coefficients of the boards with and without '
-                f'{diagnosis.added_as}, in standard deviations of the prior: what moves had been '
+                'the likeliest cause, in standard deviations of the prior: what moves had been '
                 'bent to hide it.',
                 coefficient_shifts_figure(diagnosis), GAP,
             )
@@ -90,7 +83,7 @@ def _began(diagnosis: Diagnosis) -> list[Drawing]:
     ]  # fmt: skip
 
 
-def where_figure(test: ScoreTest) -> Figure:
+def where_figure(test: Screen) -> Figure:
     """Map of residual patterns: channels by variables."""
     channels, variables, z = map_of(test)
     figure = Figure(figsize=(8.0, 0.35 * len(channels) + 1.8), layout='constrained')
@@ -105,61 +98,27 @@ def where_figure(test: ScoreTest) -> Figure:
     return figure
 
 
-def evidence_figure(diagnosis: Diagnosis, test: ScoreTest) -> Figure:
-    """Bars of the effects in order of the χ² they explain."""
-    first: dict[str, float] = {}
-    for candidate in test.wanted:
-        chi2 = test.evidence.chi2(test.block(candidate))
-        first[candidate.name] = max(chi2, first.get(candidate.name, 0.0))
-    weighed = diagnosis.named.weighed if diagnosis.named else ()
-    anew = {' and '.join(entry.refit.names): entry.delta_chi2 for entry in weighed}
-    ranked = sorted({*first, *anew}, key=lambda name: anew.get(name, first.get(name, 0.0)))
-    ranked = ranked[-BARS:]
-    figure = Figure(figsize=(8.0, 0.35 * len(ranked) + 1.2), layout='constrained')
+def probability_figure(posterior: Posterior) -> Figure:
+    """Draw bars of the probabilities of causes and of their nodes."""
+    leaves, nodes = posterior.leaves, posterior.nodes
+    rows = [
+        (_words(name), probability, nodes[posterior.entry(name).entry.node.path])
+        for name, probability in list(leaves.items())[:BARS]
+    ]
+    rows += [
+        ('something else', posterior.unknown, 0.0), ('boards alone', posterior.nothing, 0.0)
+    ]  # fmt: skip
+    rows.sort(key=lambda row: row[1])
+    figure = Figure(figsize=(8.0, 0.35 * len(rows) + 1.2), layout='constrained')
     axes = figure.subplots()
-    places = np.arange(len(ranked))
-    axes.barh(places, [first.get(name, 0.0) for name in ranked], 0.7, color=FAINT)
-    axes.barh(places, [max(anew.get(name, 0.0), 0.0) for name in ranked], 0.4, color=MEASURED)
-    axes.set_yticks(places, [_words(name) for name in ranked])
-    axes.set_xlabel('χ² explained')
+    places = np.arange(len(rows))
+    axes.barh(places, [node for _, _, node in rows], 0.7, color=FAINT)
+    axes.barh(places, [leaf for _, leaf, _ in rows], 0.4, color=MEASURED)
+    axes.set_yticks(places, [name for name, _, _ in rows])
+    axes.set_xlim(0.0, 1.0)
+    axes.set_xlabel('probability')
     quiet(axes)
     return figure
-
-
-def confusable_figure(test: ScoreTest) -> Figure:
-    """Matrix of the cosines of all effects' signatures."""
-    wanted = [candidate for candidate in test.wanted if not candidate.place]
-    size = len(wanted)
-    cosines = np.array([[largest_cosine(test, a, b) for b in wanted] for a in wanted])
-    figure = Figure(figsize=(0.42 * size + 2.5, 0.42 * size + 1.8), layout='constrained')
-    axes = figure.subplots()
-    picture = axes.imshow(cosines, cmap='Greys', vmin=0.0, vmax=1.0)
-    names = [_words(candidate.name) for candidate in wanted]
-    axes.set_xticks(range(size), names, rotation=60, ha='right')
-    axes.set_yticks(range(size), names)
-    for row, column in np.argwhere(cosines > 0.8):
-        if row != column:
-            axes.text(
-                column, row, f'{cosines[row, column]:.2f}', ha='center', va='center',
-                color='white', fontsize=7,
-            )  # fmt: skip
-    figure.colorbar(picture, ax=axes, label='cosine')
-    return figure
-
-
-def largest_cosine(test: ScoreTest, first: Candidate, second: Candidate) -> float:
-    """Largest cosine of the signatures of two effects."""
-    a, b = (list(test.block(which)) for which in (first, second))
-    information = test.evidence.information
-    roots = []
-    for block in (a, b):
-        values, vectors = np.linalg.eigh(information[np.ix_(block, block)])
-        present = values > 1e-9 * max(values.max(), 1e-30)
-        roots.append(vectors[:, present] / np.sqrt(values[present]))
-    if not (roots[0].size and roots[1].size):
-        return 0.0
-    between = roots[0].T @ information[np.ix_(a, b)] @ roots[1]
-    return float(min(1.0, np.linalg.svd(between, compute_uv=False)[0]))
 
 
 def gap_figure(holdout: HoldoutComparison, added: str) -> Figure:
@@ -188,15 +147,16 @@ def gap_figure(holdout: HoldoutComparison, added: str) -> Figure:
 
 def coefficient_shifts_figure(diagnosis: Diagnosis) -> Figure:
     """Coefficients of the boards with and without the effect."""
-    base, added = diagnosis.base, diagnosis.added
+    base, added = diagnosis.base, diagnosis.best
     assert base is not None
     assert added is not None
+    assert added.refit is not None
     board = base.fit.prior.only('coefficients')
     figure = Figure(figsize=(9.0, 4.0), layout='constrained')
     axes = figure.subplots()
     for shift, (label, refit, colour) in zip(
         (-0.12, 0.12),
-        (('boards alone', base, SECOND), (f'with {diagnosis.added_as}', added.refit, MEASURED)),
+        (('boards alone', base, SECOND), ('with the likeliest cause', added.refit, MEASURED)),
         strict=True,
     ):
         own = refit.fit.prior.slice_of('coefficients')

@@ -6,8 +6,8 @@ from itertools import combinations
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.diagnosis.inference.posterior import Explanation
 from trawl_ros.diagnosis.report.common_units import in_common_unit
-from trawl_ros.diagnosis.weighing import Weighed
 
 BETTER = 0.3
 """A sum or difference is told whose std is below this part of either value's."""
@@ -16,15 +16,17 @@ WIDTH = 1.96
 """Half a 95 % interval, in std."""
 
 
-def known_together(best: Weighed) -> Iterator[str]:
+def known_together(best: Explanation) -> Iterator[str]:
     """Yield a sentence on each two values of which sum or difference alone is known well.
 
     Where only the difference of upper and lower bridles shows, the intervals of both are wide.
     """
+    if best.refit is None:
+        return
     estimate, refit = best.refit.estimate, best.refit
-    for candidate, block in zip(refit.wanted, refit.fit.prior.blocks('effect'), strict=True):
+    for suspect, block in zip(best.suspects, refit.fit.prior.blocks('effect'), strict=True):
         for own, (i, j) in zip(
-            combinations(candidate.effect.parameters, 2), combinations(block, 2), strict=True
+            combinations(suspect.entry.effect.parameters, 2), combinations(block, 2), strict=True
         ):
             first, second = own
             if first.unit != second.unit:
@@ -36,7 +38,7 @@ def known_together(best: Weighed) -> Iterator[str]:
             unit = f' {first.unit}' if first.unit else ''
             common = in_common_unit(value, low, high, first.unit)
             yield (
-                f'Of {candidate.name.replace("_", " ")} {first.name.replace("_", " ")} {word} '
+                f'Of {suspect.entry.name.replace("_", " ")} {first.name.replace("_", " ")} {word} '
                 f'{second.name.replace("_", " ")} is known, {value:.3g}{unit} ({low:.3g} to '
                 f'{high:.3g}){common}, better than each alone.'
             )

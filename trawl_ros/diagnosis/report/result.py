@@ -1,33 +1,53 @@
 """Content of ``diagnosis.json``: a diagnosis as plain numbers."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from trawl_ros.core.version import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.holdout import HoldoutComparison
-from trawl_ros.diagnosis.naming import Named
-from trawl_ros.diagnosis.refit import Refit
+from trawl_ros.diagnosis.inference.posterior import Explanation
+from trawl_ros.diagnosis.inference.refit import Refit
+from trawl_ros.diagnosis.inference.screen import detectable
+from trawl_ros.diagnosis.library.gear_file_change import GearFileChange
 from trawl_ros.diagnosis.repair import SourceBag
-from trawl_ros.diagnosis.score_test import ScoreTest
-from trawl_ros.diagnosis.weighing import Weighed
 from trawl_ros.effects.catalogue.instruments import FROZEN_SENSOR as FROZEN
 from trawl_ros.records.channels import CHANNELS
+
+WORTH_A_LINE = 0.001
+"""Probability below which a hypothesis has no line of its own."""
 
 
 def result(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, object]:
     """Build the content of ``diagnosis.json``; numbers that are not finite are null."""
-    named, best = diagnosis.named, diagnosis.best
     sure = diagnosis.verdict in ('NAMED', 'AMBIGUOUS')
-    ambiguous = () if named is None or best is None else (*named.rivals, *named.alike)
+    posterior, best = diagnosis.posterior, diagnosis.best
+    own = () if best is None else best.names
+    added = best if diagnosis.verdict != 'NO_DISCREPANCY' else None
     return {
         'verdict': diagnosis.verdict,
         'reason': diagnosis.reason,
+        'probability': None
+        if posterior is None
+        else {
+            'no_discrepancy': posterior.nothing,
+            'something_else': posterior.unknown,
+            'leaves': _listed(posterior.leaves.items()),
+            'nodes': _listed(posterior.nodes.items()),
+        },
         'effects': _effects(diagnosis) if sure else [],
-        'ambiguous_with': list(dict.fromkeys(ambiguous)) if sure else [],
-        'mimics': _mimics(diagnosis),
+        'ambiguous_with': [name for name in diagnosis.among if name not in own] if sure else [],
+        'mimics': _changes(diagnosis) if sure else [],
         'onsets': _onsets(diagnosis),
-        'empirical': _empirical(diagnosis),
+        'empirical': _patterns(diagnosis),
+        'boards_moved': None
+        if diagnosis.moved is None
+        else {
+            'std': diagnosis.moved.std,
+            'coefficient': diagnosis.moved.coefficient,
+            'spread_m': diagnosis.moved.spread,
+            'depth_m': diagnosis.moved.depth,
+        },
         'where': [
             {
                 'channel': where.channel,
@@ -37,33 +57,18 @@ def result(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, obje
             }
             for where in diagnosis.where
         ],
-        'added': None if diagnosis.added is None else ' and '.join(diagnosis.added.refit.names),
-        'evidence': {} if named is None else _evidence(named.weighed),
+        'added': None if added is None else ' and '.join(added.names),
+        'evidence': _evidence(diagnosis),
         'channels': _channels(diagnosis.holdout),
-        'held_out': _held_out(named),
+        'held_out': _held_out(diagnosis),
         'shown_by': diagnosis.split.by if diagnosis.holdout else None,
         'excess_removed': None if diagnosis.holdout is None else _number(diagnosis.holdout.removed),
         'excess_removed_by_placebo': (
             None if diagnosis.holdout is None else _number(diagnosis.holdout.removed_by_placebo)
         ),
         'placebo': None if diagnosis.holdout is None else diagnosis.holdout.instead,
-        'coefficients': _coefficients(diagnosis.base, diagnosis.added),
-        'smallest_detectable': {}
-        if diagnosis.score_test is None
-        else _detectable(diagnosis.score_test),
-        'detection': None
-        if diagnosis.score_test is None
-        else {
-            'strongest': _number(diagnosis.score_test.strongest),
-            'limit': _number(diagnosis.score_test.limit),
-        },
-        'left_over': None
-        if named is None
-        else {
-            'probability': _number(named.left_over.probability),
-            'share': _number(named.left_over.share),
-            'noise': None if best is None else max(best.refit.fit.scales),
-        },
+        'coefficients': _coefficients(diagnosis.base, None if added is None else added.refit),
+        'smallest_detectable': _detectable(diagnosis),
         'remarks': list(diagnosis.remarks),
         'next_tow': _next(diagnosis),
         'tows': [
@@ -75,8 +80,12 @@ def result(diagnosis: Diagnosis, sources: Sequence[SourceBag]) -> dict[str, obje
     }
 
 
+def _listed(pairs: Iterable[tuple[str, float]]) -> dict[str, float]:
+    return {name: probability for name, probability in pairs if probability >= WORTH_A_LINE}
+
+
 def _effects(diagnosis: Diagnosis) -> list[dict[str, object]]:
-    best, named = diagnosis.best, diagnosis.named
+    best, posterior = diagnosis.best, diagnosis.posterior
     stuck: list[dict[str, object]] = [
         {
             'name': FROZEN.name,
@@ -94,19 +103,34 @@ def _effects(diagnosis: Diagnosis) -> list[dict[str, object]]:
         }
         for sensor in diagnosis.frozen
     ]
-    if best is None or named is None:
+    if best is None or best.refit is None or posterior is None:
         return stuck
-    fitted: list[dict[str, object]] = [
-        {
-            'name': name,
-            'class': [name, *named.alike],
-            'parameters': {
-                parameter: {'value': value, 'low': low, 'high': high, 'unit': unit}
-                for parameter, (value, low, high, unit) in values.items()
-            },
-        }
-        for name, values in values_of(best.refit).items()
-    ]
+    leaves, nodes = posterior.leaves, posterior.nodes
+    fitted: list[dict[str, object]] = []
+    for suspect, values in zip(best.suspects, values_of(best).values(), strict=True):
+        name, path = suspect.entry.name, suspect.entry.node.path
+        same = [own for own in diagnosis.among if posterior.entry(own).entry.node.path == path]
+        fitted.append(
+            {
+                'name': name,
+                'class': list(dict.fromkeys((name, *same))),
+                'probability': leaves[name],
+                'node': path,
+                'node_probability': nodes[path],
+                'named': next(
+                    (
+                        own.path
+                        for own in diagnosis.named
+                        if suspect.entry.path.startswith(own.path)
+                    ),
+                    None,
+                ),
+                'parameters': {
+                    parameter: {'value': value, 'low': low, 'high': high, 'unit': unit}
+                    for parameter, (value, low, high, unit) in values.items()
+                },
+            }
+        )
     return fitted + stuck
 
 
@@ -123,49 +147,57 @@ def _onsets(diagnosis: Diagnosis) -> list[dict[str, object]]:
     ]
 
 
-def _mimics(diagnosis: Diagnosis) -> list[dict[str, object]]:
-    """Changes of gear file or instruments that may be taken for what is named, or explain more."""
-    listed = []
-    for mimic in diagnosis.mimics:
-        value, low, high = mimic.interval
+def _changes(diagnosis: Diagnosis) -> list[dict[str, object]]:
+    """Changes of the gear file that are not excluded, the likeliest first."""
+    listed: list[dict[str, object]] = []
+    assert diagnosis.posterior is not None
+    for name in diagnosis.among:
+        suspect = diagnosis.posterior.entry(name)
+        change = suspect.entry.effect
+        if not isinstance(change, GearFileChange):
+            continue
+        alone = [
+            own
+            for own in diagnosis.posterior.explanations
+            if own.names == (name,) and own.refit is not None
+        ]
+        value, low, high, _ = values_of(alone[0])[name]['change'] if alone else (math.nan,) * 4
         listed.append(
             {
-                'name': mimic.change.name,
-                'keys': list(mimic.change.keys),
-                'words': str(mimic),
-                'alike': [other.change.name for other in mimic.alike],
-                'relative': mimic.change.relative,
-                'value': value,
-                'low': low,
-                'high': high,
-                'unit': mimic.change.unit,
-                'delta_chi2': _number(mimic.delta_chi2),
-                'delta_bic': _number(mimic.delta_bic),
+                'name': name,
+                'keys': list(change.record.keys),
+                'words': change.words(value) if alone else change.sentence,
+                'probability': diagnosis.posterior.leaves[name],
+                'relative': change.record.relative,
+                'value': _number(value),
+                'low': _number(low),
+                'high': _number(high),
+                'unit': change.record.unit,
             }
         )
     return listed
 
 
-def _empirical(diagnosis: Diagnosis) -> dict[str, object] | None:
-    """Empirical term, labelled as such."""
-    if diagnosis.empirical is None:
+def _patterns(diagnosis: Diagnosis) -> dict[str, object] | None:
+    """Return the patterns of something that the library does not have, where that is likely."""
+    posterior, screen = diagnosis.posterior, diagnosis.screen
+    if diagnosis.verdict != 'UNKNOWN' or posterior is None or screen is None:
         return None
-    weighed, term = diagnosis.empirical.weighed, diagnosis.empirical.term
-    values = values_of(weighed.refit)[term.name]
-    return {
-        'name': term.name,
-        'label': 'empirical',
-        'sentence': term.sentence,
-        'nearest_reading': term.reading,
-        'parameters': {
-            name: {'value': value, 'low': low, 'high': high, 'unit': unit}
-            for name, (value, low, high, unit) in values.items()
-        },
-        'delta_chi2': _number(weighed.delta_chi2),
-        'delta_bic': _number(weighed.delta_bic),
-        'placebo_chi2': _number(diagnosis.empirical.placebo),
-        'left_over': _number(diagnosis.empirical.left_over.probability),
-    }
+    for own in posterior.explanations:
+        if own.unknown is not None:
+            return {
+                'label': 'something else',
+                'probability': posterior.unknown,
+                'patterns': [
+                    {
+                        'channel': screen.patterns[place].channel,
+                        'variable': screen.patterns[place].shape,
+                        'size': size,
+                    }
+                    for place, size in zip(own.unknown.places, own.unknown.sizes, strict=True)
+                ],
+            }
+    return None
 
 
 def _next(diagnosis: Diagnosis) -> list[dict[str, object]]:
@@ -187,19 +219,30 @@ def _next(diagnosis: Diagnosis) -> list[dict[str, object]]:
     ]
 
 
-def _evidence(weighed: Sequence[Weighed]) -> dict[str, object]:
+def _evidence(diagnosis: Diagnosis) -> dict[str, object]:
+    """Return the evidence of each explanation that is worth a line, the likeliest first."""
+    if diagnosis.posterior is None:
+        return {}
     return {
-        ' and '.join(entry.refit.names): {
-            'delta_chi2': _number(entry.delta_chi2),
-            'delta_bic': _number(entry.delta_bic),
-            'held_out_gain': _number(entry.gain[0]),
-            'held_out_gain_low': _number(entry.gain[1]),
-            'held_out_gain_high': _number(entry.gain[2]),
-            'bootstrap_share': _number(entry.share),
-            'cosine': _number(entry.cosine),
+        _words_of(own): {
+            'probability': own.probability,
+            'log_bayes_factor': _number(own.log_factor),
+            'log_prior_odds': own.log_odds,
+            'refitted': own.refit is not None,
+            **(
+                {}
+                if own.refit is None
+                else dict(zip(('delta_chi2', 'delta_bic'), diagnosis.lowered(own), strict=True))
+            ),
         }
-        for entry in weighed
+        for own in diagnosis.posterior.explanations
+        if own.probability >= WORTH_A_LINE
     }
+
+
+def _words_of(own: Explanation) -> str:
+    names = (*own.names, *(('something_else',) if own.unknown else ()))
+    return ' and '.join(names) or 'boards_alone'
 
 
 def _channels(holdout: HoldoutComparison | None) -> dict[str, object]:
@@ -217,7 +260,7 @@ def _channels(holdout: HoldoutComparison | None) -> dict[str, object]:
     }
 
 
-def _held_out(named: Named | None) -> dict[str, object]:
+def _held_out(diagnosis: Diagnosis) -> dict[str, object]:
     """χ² of each quantity on what was kept back, errors of calibration and all others counted."""
     return {
         own.name: {
@@ -228,11 +271,11 @@ def _held_out(named: Named | None) -> dict[str, object]:
             'part': _number(own.part),
             'part_std': _number(own.part_std),
         }
-        for own in (() if named is None else named.held_out)
+        for own in diagnosis.held_out
     }
 
 
-def _coefficients(base: Refit | None, added: Weighed | None) -> dict[str, object]:
+def _coefficients(base: Refit | None, added: Refit | None) -> dict[str, object]:
     if base is None:
         return {}
     return {
@@ -241,25 +284,28 @@ def _coefficients(base: Refit | None, added: Weighed | None) -> dict[str, object
             'after': None
             if added is None
             else {
-                'value': added.refit.estimate.values[i],
-                'std': added.refit.estimate.std[i],
+                'value': added.estimate.values[i],
+                'std': added.estimate.std[i],
             },
         }
         for i, name in enumerate(base.fit.prior.only('coefficients').names)
     }
 
 
-def _detectable(test: ScoreTest) -> dict[str, object]:
-    by_candidate: dict[str, object] = {}
-    for candidate in test.wanted:
-        if candidate.place:
+def _detectable(diagnosis: Diagnosis) -> dict[str, object]:
+    """Return the size of each value, alone, whose evidence holds the cut in four of five trials."""
+    if diagnosis.screen is None:
+        return {}
+    by_cause: dict[str, object] = {}
+    for suspect in diagnosis.screen.suspects:
+        if suspect.candidate.place:
             continue
-        sizes = test.detectable(candidate)
-        by_candidate[candidate.name] = {
+        sizes = suspect.candidate.scale * detectable(diagnosis.screen, suspect)
+        by_cause[suspect.entry.name] = {
             parameter.name: {'size': _number(size), 'unit': parameter.unit}
-            for parameter, size in zip(candidate.effect.parameters, sizes, strict=True)
+            for parameter, size in zip(suspect.entry.effect.parameters, sizes, strict=True)
         }
-    return by_candidate
+    return by_cause
 
 
 def _number(value: float | None) -> float | None:

@@ -50,6 +50,5 @@ def write_diagnosis(diagnosis: Diagnosis, sources: Sequence[SourceBag], folder: 
             what_to_do=what_to_do(diagnosis),
             sections=by_section(pictures),
             repaired=gear is not None,
-            added_as=diagnosis.added_as,
         )
         write_text(folder / name, text)

@@ -4,11 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.diagnosis.holdout import split
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.estimation.from_gear import board_prior
@@ -30,10 +29,13 @@ from trawl_ros.lab.trials.readings import (
 from trawl_ros.lab.trials.recording import record_tows
 from trawl_ros.lab.trials.strength import Likelihood, likelihood
 from trawl_ros.lab.trials.towing import Course, quasi_steady, towed_in_time
-from trawl_ros.lab.trials.tows import PLANS, BlindTrialPlan, PlannedTow
+from trawl_ros.lab.trials.tows import PLANS, BlindTrialPlan
 from trawl_ros.lab.trials.trial import Key, Spec
+from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium, require_usable
+from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import StepFailed
 from trawl_ros.solver.trimming.drawn_board import fastened_as
 
@@ -42,6 +44,9 @@ WRONG_BY = 0.3
 
 DROPOUTS = 0.02
 """Share of missing means, in windows in which a channel fell silent."""
+
+MOST_PLANTS, ANOTHER = 20, 1000
+"""Plants that are drawn at most, and the step from the number of one to that of the next."""
 
 LENGTH_JITTER, SPEED_JITTER, HOURS_JITTER = 4.0, 0.02, 0.05
 """Std of how far (m, m/s, h) states are from the plan."""
@@ -75,7 +80,7 @@ class TrialData:
 def hide(spec: Spec, gear: str, cut: MeshResolution, seed: int) -> SeededTrial:
     """Hide the wanted effects if possible."""
     shape = chance_of(spec, seed)
-    plant = _plant(gear, cut, seed, spec.plant)
+    plant = _plant(gear, cut, seed, spec.plant, spec.plan)
     likely = likelihood_of(gear, cut, seed, spec.plant, spec.plan)
     drawn = tuple({**INSIDE, **OUTSIDE, **CAUSES}[name](shape) for name in spec.effects)
     # Two at once are each as strong as if it were alone.
@@ -151,9 +156,6 @@ def windows_of(
     rng: np.random.Generator,
     plan: BlindTrialPlan,
     sensors: Sensors,
-    *,
-    first: int = 0,
-    first_tow: int = 0,
 ) -> tuple[tuple[SteadyWindow, ...], tuple[LinearisedState, ...]]:
     """Windows as instruments give them, of states that are not quite as planned, and the states.
 
@@ -167,15 +169,13 @@ def windows_of(
         Tows of the trial.
     sensors
         True errors of the instruments.
-    first, first_tow
-        Numbers of the first window and the first tow.
     """
     jittered = [[_jittered(look, rng) for look in tow] for tow in tows]
-    windows = steady_windows(jittered, sensors, rng, first_tow)
+    windows = steady_windows(jittered, sensors, rng)
     states = [(tow, place) for tow in plan.tows for place in range(len(tow.states))]
     seen = tuple(
         _as_seen(window, number, tow.moment(place), rng)
-        for number, (window, (tow, place)) in enumerate(zip(windows, states, strict=True), first)
+        for number, (window, (tow, place)) in enumerate(zip(windows, states, strict=True))
     )
     return seen, tuple(look for tow in jittered for look in tow)
 
@@ -213,60 +213,42 @@ def _as_seen(
 
 
 @cache
-def _plant(gear: str, cut: MeshResolution, seed: int, number: int) -> Plant:
-    return draw_plant(gear, cut, seed, number)
+def _plant(gear: str, cut: MeshResolution, seed: int, number: int, plan: str) -> Plant:
+    """Draw a plant whose gear file, as a ship has it, can be towed in the model too.
+
+    Raises
+    ------
+    TrawlError
+        If none of many can.
+    """
+    states = sorted({state for tow in PLANS[plan].tows for state in tow.states})
+    for attempt in range(MOST_PLANTS):
+        plant = draw_plant(gear, cut, seed, number + ANOTHER * attempt, states)
+        record = fastened_as(cut.model(gear), plant.model.gear)
+        model = build_model(record).with_coefficients(board_prior(record).start)
+        near: Equilibrium | None = None
+        try:
+            for state in states:
+                near = find_equilibrium(model, OperatingPoint(state[0], *state), near)
+                require_usable(model, near)
+        except NoSteadyState:
+            continue
+        return plant
+    raise TrawlError(f'plant {number}: none of {MOST_PLANTS} gear files can be towed')
 
 
-def gear_aboard(gear: str, cut: MeshResolution, seed: int, number: int) -> GearRecord:
+def gear_aboard(gear: str, cut: MeshResolution, seed: int, number: int, plan: str) -> GearRecord:
     """Return the gear of a plant as known aboard: only the fastening points are the true ones."""
-    return fastened_as(cut.model(gear), _plant(gear, cut, seed, number).model.gear)
+    return fastened_as(cut.model(gear), _plant(gear, cut, seed, number, plan).model.gear)
 
 
 @cache
 def likelihood_of(gear: str, cut: MeshResolution, seed: int, number: int, plan: str) -> Likelihood:
     """Likelihood of a plant in the windows of a plan."""
-    plant, tows = _plant(gear, cut, seed, number), PLANS[plan]
+    plant, tows = _plant(gear, cut, seed, number, plan), PLANS[plan]
     quiet = steady_windows(plant.towed((), tows), AS_STATED, np.random.default_rng(0))
     quiet = tuple(replace(window, index=place, state=place) for place, window in enumerate(quiet))
     return likelihood(plant, board_prior(cut.model(gear)), quiet, tows)
-
-
-FOLLOWED = 'followed'
-
-
-def proposed(diagnosis: Mapping[str, Any]) -> PlannedTow | None:
-    """Return the next tow that a diagnosis proposes, or None."""
-    for step in diagnosis['next_tow']:
-        if step['states']:
-            states = tuple((state['warp_length'], state['speed']) for state in step['states'])
-            return PlannedTow(states, eastward=not step['reciprocal'])
-    return None
-
-
-def tow_on(
-    spec: Spec,
-    gear: str,
-    cut: MeshResolution,
-    seed: int,
-    windows: Sequence[SteadyWindow],
-    tow: PlannedTow,
-) -> tuple[Key, tuple[SteadyWindow, ...] | None]:
-    """Add a tow to the windows of a case, or state in the key why it cannot be towed."""
-    hiding = hide(spec, gear, cut, seed)
-    key = replace(hiding.key, spec=replace(spec, series=FOLLOWED))
-    plan = BlindTrialPlan((tow,), baseline=0)
-    towed = hiding.towed(plan)
-    if towed is None:
-        return replace(key, testable=False, why_not='cannot be towed'), None
-    more, _ = windows_of(
-        towed,
-        chance_of(spec, seed, FOLLOWED),
-        plan,
-        hiding.sensors,
-        first=len(windows),
-        first_tow=1 + max(window.tow for window in windows),
-    )
-    return key, (*windows, *more)
 
 
 def make_bags(spec: Spec, gear: str, cut: MeshResolution, seed: int, folder: Path) -> Key:

@@ -119,7 +119,13 @@ def _clean(model: GearModel, state: State, found: Equilibrium) -> Clean:
     return Clean(look, slow_mode(model, found).shape, found)
 
 
-def draw_plant(gear: str, cut: MeshResolution, seed: int, number: int) -> Plant:
+def draw_plant(
+    gear: str,
+    cut: MeshResolution,
+    seed: int,
+    number: int,
+    states: Sequence[State] = STATES,
+) -> Plant:
     """Draw a board that can be towed in all states: stable in each, not only solved.
 
     Parameters
@@ -128,6 +134,8 @@ def draw_plant(gear: str, cut: MeshResolution, seed: int, number: int) -> Plant:
         The gear, and how fine model and plant are.
     seed, number
         Of the study, and of the plant within it.
+    states
+        Steady states in which it must be towable.
 
     Raises
     ------
@@ -135,7 +143,7 @@ def draw_plant(gear: str, cut: MeshResolution, seed: int, number: int) -> Plant:
         If none of many boards can be towed.
     """
     rng = np.random.default_rng([seed, number, *b'plant'])
-    drawn = draw_board(cut.plant(gear), STATES, rng, DRAW, build=_built)
+    drawn = draw_board(cut.plant(gear), list(states), rng, DRAW, build=_built)
     clean = {state: _clean(drawn.model, state, found) for state, found in drawn.steady.items()}
     return Plant(drawn.model, drawn.coefficients, clean)
 

@@ -13,10 +13,11 @@ from scipy.stats import norm
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.diagnosis.candidates import Candidate, candidates, signatures, values_vector
-from trawl_ros.diagnosis.evidence import POWER, Evidence, evidence
 from trawl_ros.diagnosis.holdout import split
-from trawl_ros.diagnosis.refit import OPTIONS
+from trawl_ros.diagnosis.inference.blocks import ErrorSize, blocks_of
+from trawl_ros.diagnosis.inference.candidates import Candidate, signatures, values_vector
+from trawl_ros.diagnosis.inference.marginal import Marginal, marginal
+from trawl_ros.diagnosis.inference.refit import OPTIONS
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.linearised import Linearised
@@ -33,8 +34,14 @@ from trawl_ros.solver.predict import Predictor
 ALARM = 0.01 / 30.0
 """False-alarm probability of each of about thirty tests, for 1 % over all of them."""
 
+POWER = 0.84
+"""Normal quantile of 80 %."""
+
 SIGMAS = float(norm.isf(0.5 * ALARM)) + POWER
 """Strength in standard deviations that is detected in 80 % of cases."""
+
+AS_KNOWN = ErrorSize(calibration=1.0, model=1.0, form=0.0)
+"""Size of errors where each is as it is stated."""
 
 MAX_PROBES = 10
 """Largest number of probes near the wanted size."""
@@ -101,11 +108,10 @@ class Likelihood:
         chosen = {part.window.index for part in self.fit.windows}
         columns = [own for number, own in enumerate(columns) if number in chosen]
         if not beside_catalogue:
-            return float(np.sqrt(evidence(self.fit, columns, np.ones(1)).information[0, 0]))
+            return float(np.sqrt(self._information(columns).information[0, 0]))
         mimics = self._mimics
-        number = mimics[0].shape[1]
         both = [np.hstack((own, other)) for own, other in zip(columns, mimics, strict=True)]
-        found = evidence(self.fit, both, np.ones(number + 1))
+        found = self._information(both)
         left = [found.information[0, 0]]
         for block in values_vector(self.wanted).blocks('effect'):
             cosine = found.covered([0], np.ones(1), [place + 1 for place in block])
@@ -116,18 +122,19 @@ class Likelihood:
     def _clean(self) -> list[LinearisedState]:
         return _flat(self.plant.towed((), self.plan))
 
+    def _information(self, columns: Sequence[FloatArray]) -> Marginal:
+        return marginal(blocks_of(self.fit, columns, errors=AS_KNOWN))
+
     @cached_property
     def wanted(self) -> tuple[Candidate, ...]:
-        """All effects of the catalogue."""
-        predictor = Predictor(self.plant.model, without=frozenset(range(self.plan.baseline)))
+        """All effects of the catalogue, from each start."""
         depths = np.array([part.window.means['net_depth'] for part in self.fit.windows])
-        return candidates(catalogue(), predictor, depths)
-
-    @property
-    def mimicry(self) -> Evidence:
-        """Evidence of the plan on all effects of the catalogue."""
-        units = np.concatenate([candidate.scale for candidate in self.wanted])
-        return evidence(self.fit, self._mimics, units)
+        return tuple(
+            Candidate(effect, start, place)
+            for effect in catalogue().values()
+            if effect.fitted
+            for place, start in enumerate(effect.starts(depths))
+        )
 
     @cached_property
     def _mimics(self) -> list[FloatArray]:

@@ -71,7 +71,17 @@ _FISHING: tuple[State, ...] = ((450.0, 2.2), (650.0, 2.4), (650.0, 2.0))
 _DEEPER: tuple[State, ...] = ((550.0, 2.4), (800.0, 2.2), (450.0, 2.0))
 _LONGER: tuple[State, ...] = ((300.0, 2.2), (550.0, 2.2), (900.0, 2.2), (650.0, 2.2))
 
+DAY = BlindTrialPlan(
+    (
+        PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False),
+        PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False),
+    ),
+    baseline=1,
+)  # fmt: skip
+"""Plan of one baseline and three tows of an hour, three states each."""
+
 SEA: Mapping[str, BlindTrialPlan] = {
+    'day': DAY,
     'three tows': BlindTrialPlan(
         (PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False), PlannedTow(_FISHING, True)),
         baseline=1,

@@ -1,11 +1,11 @@
 """Diagnostic statuses of a diagnosis and of what begins, for ``discrepancy/findings``."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.onset.findings import Finding
-from trawl_ros.diagnosis.refit import Refit
 from trawl_ros.diagnosis.report.sentences import headline
 from trawl_ros.effects.catalogue.instruments import FROZEN_SENSOR as FROZEN
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
@@ -17,18 +17,26 @@ NAME = 'discrepancy'
 CALM = ('NO_DISCREPANCY', 'NOT_TESTABLE')
 """Verdicts that raise no finding."""
 
+MOST_CAUSES = 10
+"""Number of causes whose probability the verdict's status has."""
+
 
 def finding_statuses(diagnosis: Diagnosis) -> list[Status]:
-    """Return the verdict's status, then one per finding: an effect, or an empirical term."""
-    test = diagnosis.score_test
+    """Return the verdict's status with the probabilities, then one per cause that is likely."""
+    posterior = diagnosis.posterior
     values = {
         'verdict': diagnosis.verdict,
         'reason': diagnosis.reason,
         'windows': str(len(diagnosis.split.deciding) + len(diagnosis.split.kept_back)),
         'tows': str(len(diagnosis.tows)),
     }
-    if test is not None:
-        values |= {'evidence': f'{test.strongest:.2f}', 'limit': f'{test.limit:.2f}'}
+    if posterior is not None:
+        values |= {
+            'probability boards alone': f'{posterior.nothing:.4f}',
+            'probability something else': f'{posterior.unknown:.4f}',
+        }
+        for name, probability in list(posterior.leaves.items())[:MOST_CAUSES]:
+            values[f'probability {name}'] = f'{probability:.4f}'
     for where in diagnosis.where:
         values.setdefault(f'{where.channel} {where.variable}', f'{where.region}, z {where.z:.1f}')
     level = OK if diagnosis.verdict in CALM else WARN
@@ -37,36 +45,31 @@ def finding_statuses(diagnosis: Diagnosis) -> list[Status]:
         Status(f'{NAME}: {FROZEN.name} {sensor.channel}', WARN, sensor.sentence)
         for sensor in diagnosis.frozen
     ]
-    repair = diagnosis.repair
-    if repair is None and diagnosis.verdict == 'AMBIGUOUS':
-        repair = diagnosis.best
-    if repair is not None:
-        kind = 'empirical term' if diagnosis.empirical is not None else 'effect'
+    best = diagnosis.best if diagnosis.verdict in ('NAMED', 'AMBIGUOUS') else None
+    if best is None or best.refit is None or posterior is None:
+        return statuses
+    for suspect, own in zip(best.suspects, values_of(best).values(), strict=True):
+        name = suspect.entry.name
         more = {
             'verdict': diagnosis.verdict,
-            'delta chi2': f'{repair.delta_chi2:.1f}',
-            'delta bic': f'{repair.delta_bic:.1f}',
-            'bootstrap share': f'{repair.share:.2f}',
+            'node': suspect.entry.node.path,
+            'probability': f'{posterior.leaves[name]:.4f}',
+            'node probability': f'{posterior.nodes[suspect.entry.node.path]:.4f}',
         }
-        statuses += [
-            Status(f'{NAME}: {name}', WARN, f'{kind} {name}', own | more)
-            for name, own in _sizes(repair.refit).items()
-        ]
+        statuses.append(Status(f'{NAME}: {name}', WARN, f'cause {name}', _sizes(own) | more))
     return statuses
 
 
-def _sizes(refit: Refit) -> dict[str, dict[str, str]]:
-    by_effect: dict[str, dict[str, str]] = {}
-    for name, values in values_of(refit).items():
-        by_effect[name] = {}
-        for parameter, (value, low, high, unit) in values.items():
-            by_effect[name] |= {
-                parameter: f'{value:.6g}',
-                f'{parameter} low': f'{low:.6g}',
-                f'{parameter} high': f'{high:.6g}',
-                f'{parameter} unit': unit,
-            }
-    return by_effect
+def _sizes(values: Mapping[str, tuple[float, float, float, str]]) -> dict[str, str]:
+    sizes: dict[str, str] = {}
+    for parameter, (value, low, high, unit) in values.items():
+        sizes |= {
+            parameter: f'{value:.6g}',
+            f'{parameter} low': f'{low:.6g}',
+            f'{parameter} high': f'{high:.6g}',
+            f'{parameter} unit': unit,
+        }
+    return sizes
 
 
 def onset_status(finding: Finding, acknowledged: bool) -> Status:

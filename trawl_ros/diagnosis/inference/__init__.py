@@ -1,0 +1,1 @@
+"""Inference of a diagnosis: evidence of hypotheses, posterior, and decision."""

@@ -1,0 +1,43 @@
+"""Numbers of the inference, fitted on trials of development seeds and frozen before scoring."""
+
+from dataclasses import dataclass, field
+
+from trawl_ros.diagnosis.inference.blocks import ErrorSize
+
+
+@dataclass(frozen=True)
+class InferenceOptions:
+    """Options of the inference.
+
+    Attributes
+    ----------
+    temperature
+        Log Bayes factors are divided by it.
+    cut
+        Probability from which a leaf or a node is named; certified by the study.
+    errors
+        Size of errors that readings do not tell.
+    unknown_rate
+        Prior probability of something that the library does not have.
+    tail
+        Hypotheses are refitted until the others together hold less than this probability; errors
+        alone make a quantity of a repair that fails on held-out tows miss by as much so seldom.
+    least_share
+        A hypothesis of less probability to first order is not refitted.
+    refits
+        Largest number of refits.
+    grown
+        Number of the likeliest hypotheses to which every other one is added.
+    largest_set
+        Largest number of causes at once.
+    """
+
+    temperature: float = 1.5
+    cut: float = 0.95
+    errors: ErrorSize = field(default_factory=ErrorSize)
+    unknown_rate: float = 0.03
+    tail: float = 1e-3
+    least_share: float = 0.01
+    refits: int = 8
+    grown: int = 6
+    largest_set: int = 3

@@ -1,0 +1,1 @@
+"""Library of hypotheses: effects, changes of the gear file and errors of instruments."""

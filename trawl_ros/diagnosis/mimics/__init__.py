@@ -1,1 +1,0 @@
-"""Library of mimics: changes of gear file or instruments that an effect may be taken for."""

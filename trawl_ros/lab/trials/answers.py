@@ -1,0 +1,73 @@
+"""Right answers to blind trials: leaves of the library for each hidden cause, fixed beforehand."""
+
+from collections.abc import Iterable, Mapping
+
+from trawl_ros.diagnosis.library.table import hypothesis_table
+from trawl_ros.lab.trials.hidden_effects.inside import INSIDE
+from trawl_ros.lab.trials.hidden_effects.other_keys import RIGHT_CHANGES, RIGHT_NAMES
+
+NOT_IN_LIBRARY = ('block_angle', 'opening_by_depth')
+"""Hidden causes that no hypothesis of the library is."""
+
+OF_OUTSIDE: Mapping[str, tuple[str, ...]] = {
+    'bridle_weed': (
+        'starboard_bridle_diameter',
+        'starboard_bridle_friction',
+        'bridles_drag_one_side',
+    ),
+    'counter_drift': ('counters_drift',),
+    'jet': ('current_profile_along',),
+    'net_weight': ('net_weight',),
+    'pitch_mount': ('both_pitch_drift',),
+    'port_depth_sensor': ('port_door_depth_scale', 'port_door_depth_offset'),
+    'spread_by_hours': ('spread_drift',),
+    'starboard_cell': ('starboard_cell_scale', 'starboard_cell_offset'),
+}
+"""Leaves of causes that the catalogue of effects does not have."""
+
+ALSO: Mapping[str, tuple[str, ...]] = {
+    'current_shear': ('current_profile_along',),
+    'cross_current': ('current_profile_across',),
+    'tide': ('log_drift',),
+    'edge_of_current': ('current_in_time',),
+    'catch_build_up': ('catch',),
+    'board_mass': ('board_weight',),
+    'kite_gone': ('kite_setting',),
+    'floats_gone': ('float_buoyancy',),
+    'thicker_warps': ('warp_diameter',),
+}
+"""Leaves that are the same thing in another form."""
+
+
+def right_leaves(cause: str) -> tuple[str, ...]:
+    """Return the leaves of the library that a hidden cause is; none if it is outside of it."""
+    if cause in NOT_IN_LIBRARY:
+        return ()
+    if cause in OF_OUTSIDE:
+        return OF_OUTSIDE[cause]
+    effects = (cause,) if cause in INSIDE else RIGHT_NAMES[cause]
+    leaves = [
+        row.name
+        for row in hypothesis_table().entries
+        if not row.keys and (row.effect or row.name) in effects
+    ]
+    return tuple(dict.fromkeys((*leaves, *RIGHT_CHANGES.get(cause, ()), *ALSO.get(cause, ()))))
+
+
+def right_nodes(cause: str) -> tuple[str, ...]:
+    """Return the nodes, each with one check on deck, of the leaves that a hidden cause is."""
+    table = {row.name: row.at for row in hypothesis_table().entries}
+    sides = ('port', 'starboard')
+    at = {f'{side}_{name}': node for name, node in table.items() for side in sides} | table
+    return tuple(dict.fromkeys(at[leaf] for leaf in right_leaves(cause)))
+
+
+def holds(named: str, causes: Iterable[str]) -> bool:
+    """Return True if a named leaf or node (a path) holds one of the hidden causes."""
+    leaf = named.rpartition('/')[2]
+    for cause in causes:
+        if leaf in right_leaves(cause):
+            return True
+        if any(own == named or own.startswith(f'{named}/') for own in right_nodes(cause)):
+            return True
+    return False
