@@ -6,7 +6,7 @@ import signal
 import pytest
 from PIL import Image
 
-from trawl_ros.cli.progress import ProgressDisplay
+from trawl_ros.cli.console.progress import ProgressDisplay
 
 
 @pytest.fixture

@@ -10,8 +10,10 @@ from trawl_ros.bags.export import ARRAY_LIMIT, DICTIONARY, export_bag
 from trawl_ros.bags.reader import Bag
 from trawl_ros.bags.repair import SUFFIX, repair_bag
 from trawl_ros.bags.sentence_log import SentenceLog, write_sentence_log
-from trawl_ros.cli.bag_tables import check_as_json, info_as_json, print_check, print_info
 from trawl_ros.cli.compare import OUT_OPTION, print_comparison
+from trawl_ros.cli.console.bag_tables import check_as_json, info_as_json, print_check, print_info
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
+from trawl_ros.cli.console.tables import output_console
 from trawl_ros.cli.options import (
     BAG,
     FOLDER,
@@ -22,8 +24,6 @@ from trawl_ros.cli.options import (
     UNITS_OPTION,
     Number,
 )
-from trawl_ros.cli.progress import ProgressDisplay, error_console
-from trawl_ros.cli.tables import output_console
 from trawl_ros.core.display_units import DisplayUnits
 from trawl_ros.core.errors import BagError
 from trawl_ros.records.fields import WaterColumn

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
+from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.cli.options import (
     BAG,
     FOLDER,
@@ -14,8 +16,6 @@ from trawl_ros.cli.options import (
     NAMESPACE_OPTION,
     UNITS_OPTION,
 )
-from trawl_ros.cli.progress import ProgressDisplay, error_console
-from trawl_ros.cli.tables import output_console, plain_table
 from trawl_ros.core.display_units import DisplayUnits
 
 if TYPE_CHECKING:

@@ -7,6 +7,7 @@ import click
 from rich.console import Console
 
 from trawl_ros.api import trials
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.cli.options import (
     BAG,
     FOLDER,
@@ -15,7 +16,6 @@ from trawl_ros.cli.options import (
     NAMESPACE_OPTION,
     SCHEDULER_OPTION,
 )
-from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.report.sentences import headline, sentences
 from trawl_ros.diagnosis.report.what_to_do import what_to_do

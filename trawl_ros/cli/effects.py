@@ -3,7 +3,7 @@
 import click
 from rich.console import Console
 
-from trawl_ros.cli.tables import output_console, plain_table
+from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.effects.base.effect import Effect, Parameter
 from trawl_ros.effects.registry import catalogue
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import click
 import numpy as np
 
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
+from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.cli.options import FILE, FOLDER, SPEED, UNITS_OPTION, WARP, Number
-from trawl_ros.cli.progress import ProgressDisplay, error_console
-from trawl_ros.cli.tables import output_console, plain_table
 from trawl_ros.core.display_units import DisplayUnits
 
 EXIT_FINDINGS = 3

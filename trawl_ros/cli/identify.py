@@ -7,6 +7,7 @@ import click
 from rich.console import Console
 
 from trawl_ros.api import trials
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.cli.options import (
     BAG,
     FOLDER,
@@ -17,7 +18,6 @@ from trawl_ros.cli.options import (
     SCHEDULER_OPTION,
     UNITS_OPTION,
 )
-from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.display_units import METRIC, DisplayUnits
 from trawl_ros.estimation.report.motion import motion_lines, motion_table
 from trawl_ros.estimation.report.report import Report

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from trawl_ros.cli.loaded_group import LoadedGroup
+from trawl_ros.cli.console.loaded_group import LoadedGroup
 from trawl_ros.core.errors import TrawlError, sentence_of
 from trawl_ros.core.first_start import need_home
 from trawl_ros.core.version import __version__

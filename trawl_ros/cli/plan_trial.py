@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
+from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.cli.options import FOLDER, FORCE_OPTION, Number
-from trawl_ros.cli.progress import ProgressDisplay, error_console
-from trawl_ros.cli.tables import output_console, plain_table
 
 if TYPE_CHECKING:
     from trawl_ros.estimation.planning.plan import TrialPlan

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import click
 
-from trawl_ros.cli.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.console.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.cli.options import BAG, FOLDER, FORCE_OPTION, NAMESPACE_OPTION
-from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.plots.album import plot
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
+from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.cli.options import BAG, GEAR_OPTION, NAMESPACE_OPTION
-from trawl_ros.cli.tables import output_console, plain_table
 
 
 @click.command('swept')

@@ -8,9 +8,9 @@ from rich.console import Console
 from rich.table import Table
 
 from trawl_ros.api import tows
-from trawl_ros.cli.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.console.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.cli.options import NEW_BAG, SCENARIO
-from trawl_ros.cli.progress import ProgressDisplay, error_console
 
 
 @click.command('tow')

@@ -8,8 +8,8 @@ import click
 import numpy as np
 from click.core import ParameterSource
 
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.cli.options import FILE, SPEED, UNITS_OPTION, WARP, Number, QuantityNumber
-from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.display_units import DisplayUnits
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from trawl_ros.cli.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.console.interruption import INTERRUPTED, Interruption
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.cli.options import BAG, FILE, NAMESPACE_OPTION
-from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.errors import RosMissing
 from trawl_ros.core.network import THIS_MACHINE
 

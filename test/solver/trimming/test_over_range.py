@@ -180,7 +180,7 @@ def test_the_command_prints_points_and_what_they_give(
     coarse_gear: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Lines of progress come every 10 s, and a fast machine is done before the first.
-    monkeypatch.setattr('trawl_ros.cli.progress.LINE_EVERY_S', 0.0)
+    monkeypatch.setattr('trawl_ros.cli.console.progress.LINE_EVERY_S', 0.0)
     result = CliRunner().invoke(
         trawl,
         ['trim', str(coarse_gear), '--attack', '20', '--inclination', '12', '--warp', '400']

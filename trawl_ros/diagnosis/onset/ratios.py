@@ -21,7 +21,7 @@ MOVING = 6.0
 """Rarity that is asked for beyond the limit of an onset while winches or speed change, which fades
 as the model's error does (`WhiteningFilter.unrest`): what boards near their stall do then is not
 within the derivatives of a course, and looks like something that begins. By hand, on tows of seeds
-that score nothing: docs/studies/history.md."""
+that score nothing: docs/studies/lessons.md."""
 
 NEAR = float(chdtri(1, 0.05))
 """Difference from the largest ratio that 95 % of the likelihood do not exclude."""

@@ -13,7 +13,7 @@ FEWEST = 8
 LEAST = 0.01
 """Swing, in std over the mean, below which nothing is said of a swell: in a calm sea that of the
 median stretch is below 0.001, and 2.3 to 4.7 % in a swell of 2.5 m in 10 s
-(docs/studies/history.md)."""
+(docs/studies/lessons.md)."""
 
 
 def swell_of(read: TowReadings, stretch_s: float) -> float:

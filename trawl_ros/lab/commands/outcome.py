@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from trawl_ros.cli.interruption import INTERRUPTED
-from trawl_ros.cli.progress import ProgressDisplay, error_console
+from trawl_ros.cli.console.interruption import INTERRUPTED
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.lab.report.measured import MeasuredValue
 
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.cli.options import FORCE_OPTION, REPORT_OPTION
-from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.lab.commands.outcome import print_missed, print_reached
 from trawl_ros.lab.report.page import Section
 from trawl_ros.lab.validation.cases import case_of_figure

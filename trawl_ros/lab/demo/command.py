@@ -14,8 +14,8 @@ from rich.table import Table
 from trawl_ros.api import trials
 from trawl_ros.bags.reader import summarise
 from trawl_ros.bags.sentence_log import write_sentence_log
+from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.cli.options import FOLDER, SCENARIO
-from trawl_ros.cli.progress import ProgressDisplay, error_console
 from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.files import write_figure
 from trawl_ros.core.progress import WorkProgress

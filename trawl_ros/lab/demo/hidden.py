@@ -15,7 +15,7 @@ import yaml
 from rich.console import Console
 
 from trawl_ros.bags.reader import summarise
-from trawl_ros.cli.tables import output_console, plain_table
+from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import made_folder
 from trawl_ros.core.parallel import cores

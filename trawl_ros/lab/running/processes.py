@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 
-from trawl_ros.cli.interruption import Uninterrupted
+from trawl_ros.cli.console.interruption import Uninterrupted
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import made_folder
 

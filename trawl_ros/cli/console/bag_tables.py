@@ -13,7 +13,7 @@ from rich.markup import escape
 from trawl_ros.bags.check import GROUPS, BagCheck, describe_qos
 from trawl_ros.bags.reader import Bag, BagSummary
 from trawl_ros.bags.sources import BagFacts
-from trawl_ros.cli.tables import figure, plain_table
+from trawl_ros.cli.console.tables import figure, plain_table
 from trawl_ros.core.time import SECOND
 
 UNKNOWN = 'unknown'

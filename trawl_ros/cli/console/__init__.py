@@ -1,0 +1,1 @@
+"""What commands share at the terminal: progress, interruption, tables and lazy loading."""
