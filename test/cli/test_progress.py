@@ -5,7 +5,7 @@ import time
 
 from rich.console import Console
 
-from trawl_ros.cli import progress as shown
+from trawl_ros.cli.console import progress as shown
 from trawl_ros.cli.console.progress import ProgressDisplay
 from trawl_ros.core.progress import WorkProgress, step_counter
 
