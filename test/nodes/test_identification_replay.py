@@ -82,6 +82,8 @@ class Replay:
         self.graph.until(lambda: player.exit_code is not None)
         self.graph.until(lambda: all(node._worker.idle for node in self.nodes))
         self.graph.settle(0.2)
+        heard = self.listener
+        self.graph.until(lambda: len(heard.estimates) == len(heard.covariances))
         self.graph.remove(player)
         return player.exit_code
 
