@@ -30,7 +30,7 @@ PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-re
 PROSE_REPORTS := docs/benchmark.md docs/interface.md docs/validation/* \
     $(addprefix docs/studies/,$(addsuffix .md,chaos discrepancy fuzz identification instruments motion \
     onset robustness soak))
-PROSE_LATER := docs/diagnosis.md docs/guides/trial.md docs/guides/ros2.md
+PROSE_LATER := docs/diagnosis.md docs/guides/ros2.md
 PROSE := $(PROSE_REPORTS) $(PROSE_LATER)
 
 # Tests of what needs no steady state.
