@@ -26,12 +26,10 @@ UV = index="$${PIP_INDEX_URL:-$$($(BIN)/python -m pip config get global.index-ur
     if [ -n "$$index" ]; then export UV_DEFAULT_INDEX="$$index"; fi; $(BIN)/uv
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
-# Pages that the prose rule passes over: reports that commands write, and those still to be shortened.
+# Pages that the prose rule passes over: reports that commands write.
 PROSE_REPORTS := docs/benchmark.md docs/interface.md docs/validation/* \
     $(addprefix docs/studies/,$(addsuffix .md,chaos discrepancy fuzz identification instruments motion \
     onset robustness soak))
-PROSE_LATER := docs/diagnosis.md docs/guides/planning.md docs/guides/trial.md docs/guides/ros2.md
-PROSE := $(PROSE_REPORTS) $(PROSE_LATER)
 
 # Tests of what needs no steady state.
 QUICK := $(addprefix test/,bags config effects gear instruments launch messages model lab/reference_codes \
@@ -127,7 +125,7 @@ lint: $(VENV)/ready
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports --no-cache > $(VENV)/layers.log || { cat $(VENV)/layers.log; exit 1; }
-	@$(BIN)/pymarkdown scan --recurse $(patsubst %,--exclude '%',$(PROSE)) docs *.md
+	@$(BIN)/pymarkdown scan --recurse $(patsubst %,--exclude '%',$(PROSE_REPORTS)) docs *.md
 
 lock: $(VENV)/ready
 	@$(UV) pip compile --quiet --upgrade --generate-hashes --universal --python-version 3.11 \

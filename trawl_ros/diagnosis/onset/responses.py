@@ -3,7 +3,7 @@
 What an effect changes after its onset is what it would change had it been there for long, less a
 part that fades: a free motion of the gear. That part is taken from one steady state and added at
 all times, as the motions that are slow hardly differ from state to state; it is no exact
-derivative. `docs/diagnosis.md` has what that costs.
+derivative. `docs/onset.md` has the measured performance.
 """
 
 import itertools
