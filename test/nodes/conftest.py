@@ -72,19 +72,6 @@ def open_graph():
     return open_graph
 
 
-@pytest.fixture(scope='session', autouse=True)
-def quick_discovery() -> Iterator[None]:
-    """Settle in a fraction of a second: nodes of one process find each other at once."""
-    try:
-        from trawl_ros.nodes.runtime import credit
-    except ImportError:  # without ROS 2
-        yield
-        return
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(credit, 'SETTLED_S', 0.2)
-        yield
-
-
 @pytest.fixture
 def graph(open_graph) -> Iterator['Graph']:
     with open_graph() as graph:

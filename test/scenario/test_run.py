@@ -125,5 +125,6 @@ def test_a_bag_has_transforms_where_the_scenario_wants_them(scenario, tmp_path):
     assert parents == {
         'vessel': 'map', 'sonar': 'map', 'door_port': 'map', 'door_starboard': 'map',
         'echo_sounder': 'vessel', 'door_port_spread': 'door_port', 'sonar_width': 'sonar',
+        'slant_range': 'vessel',
     }  # fmt: skip
     assert check_bag(path).sound

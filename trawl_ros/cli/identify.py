@@ -21,12 +21,12 @@ from trawl_ros.cli.options import (
 from trawl_ros.core.display_units import METRIC, DisplayUnits
 from trawl_ros.estimation.report.motion import motion_lines, motion_table
 from trawl_ros.estimation.report.report import Report
-from trawl_ros.estimation.report.sensors import sensor_table
 from trawl_ros.estimation.report.table import (
     channel_table,
     closing_lines,
     coefficient_table,
     opening_line,
+    sensor_table,
 )
 
 TABLE_COLUMNS = 100

@@ -120,7 +120,8 @@ class Channel:
         sensor's noise: it is left out before outliers of the noise are looked for. Infinite
         where false echoes do not occur.
     usual
-        False for a sensor that few ships have; plans of trials do not count on it.
+        False for a sensor that few ships have: plans of trials do not count on it, and windows do
+        not wait for its first reading.
     """
 
     name: str

@@ -31,7 +31,7 @@ def _headline(diagnosis: Diagnosis) -> str:
         return f'No discrepancy: {diagnosis.reason}.'
     if diagnosis.best is None and diagnosis.frozen:
         listed = '; '.join(map(str, diagnosis.frozen))
-        return f'A sensor is frozen ({listed}), and {diagnosis.reason}.'
+        return f'A sensor is frozen ({listed}). Of the other readings: {diagnosis.reason}.'
     if diagnosis.verdict == 'NAMED':
         named = ' and '.join(
             f'{own.words} ({own.probability:.1%})'

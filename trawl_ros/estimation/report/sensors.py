@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from rich.table import Table
 
 from trawl_ros.core.files import finite
 from trawl_ros.estimation.fit.linearised import Linearised
@@ -116,14 +115,3 @@ def sensor_cells(row: SensorComparison) -> list[str]:
 def sensor_headings(rows: Sequence[SensorComparison]) -> list[str]:
     """Headings of the predictions."""
     return [CASES[case] for case in rows[0].predicted] if rows else []
-
-
-def sensor_table(rows: Sequence[SensorComparison]) -> Table:
-    """Table for the terminal."""
-    table = Table(title='Measured and predicted: mean over the windows (mean absolute error)')
-    table.add_column('', style='bold')
-    for heading in ('measured', *sensor_headings(rows)):
-        table.add_column(heading, justify='right')
-    for row in rows:
-        table.add_row(*sensor_cells(row))
-    return table

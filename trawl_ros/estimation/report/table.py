@@ -1,11 +1,14 @@
 """Tables of the report for the terminal."""
 
+from collections.abc import Sequence
+
 from rich.table import Table
 
 from trawl_ros.core.display_units import METRIC, DisplayUnits, quantity_of
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.page import percent
 from trawl_ros.estimation.report.report import Report
+from trawl_ros.estimation.report.sensors import SensorComparison, sensor_cells, sensor_headings
 from trawl_ros.estimation.report.verdict import verdict
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -76,3 +79,14 @@ def closing_lines(report: Report) -> list[str]:
         counts = ', '.join(f'{reason} {count}' for reason, count in report.rejected.items())
         lines.append(f'Rejected: {counts}.')
     return lines
+
+
+def sensor_table(rows: Sequence[SensorComparison]) -> Table:
+    """Table for the terminal."""
+    table = Table(title='Measured and predicted: mean over the windows (mean absolute error)')
+    table.add_column('', style='bold')
+    for heading in ('measured', *sensor_headings(rows)):
+        table.add_column(heading, justify='right')
+    for row in rows:
+        table.add_row(*sensor_cells(row))
+    return table

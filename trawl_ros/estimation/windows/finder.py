@@ -155,9 +155,9 @@ class SteadyWindowFinder:
         reorder = round(self._options.reorder_s * NANO)
         begins = lead < self._winch_watermark.start + patience
         passed = lead
-        for buffer in self._buffers.values():
+        for name, buffer in self._buffers.items():
             if buffer.newest is None:
-                if begins:
+                if begins and CHANNELS[name].usual:
                     return None
             elif begins or buffer.newest + buffer.delay >= lead - patience:
                 passed = min(passed, buffer.newest + buffer.delay - reorder)
