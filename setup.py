@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Build of the ROS 2 package trawl_ros; the only place that declares dependencies for pip."""
 
 from pathlib import Path

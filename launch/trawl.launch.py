@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """The whole chain on a full ROS 2: simulation, instruments, and what else is asked for.
 
 ``ros2 launch trawl_ros trawl.launch.py scenario:=demo record:=my_trial rviz:=true``

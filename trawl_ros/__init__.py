@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Emulates the instruments of a mid-water trawler and keeps the model of its gear honest.
 
 The names of `__all__` are the public face; each is loaded when it is first used.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Comparison of logs with a gear file as it is, and of two bags."""
 
 from collections.abc import Callable, Iterator, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Check of a gear file without a solution: main quantities, findings and drawings."""
 
 from collections.abc import Iterator, Mapping

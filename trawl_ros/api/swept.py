@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Swept area and volume of a haul, each with an interval, from the readings of a bag."""
 
 import math

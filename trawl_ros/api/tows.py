@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Tows: simulated, recorded as bags, and read."""
 
 from collections.abc import Callable, Iterator, Mapping

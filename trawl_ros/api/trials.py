@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sea trials: identification and diagnosis from bags, and plan of the next trial.
 
 Imports of figures, motion and onsets are slow, so they stand in the functions that need them.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Check of a bag: its content against its own metadata and against the topic table.
 
 A finding is something that every user of the bag must know; a note only describes the bag. A bag

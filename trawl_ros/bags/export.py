@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """CSV export of bags: one file per topic, for spreadsheets and data frames."""
 
 import csv

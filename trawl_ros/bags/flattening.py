@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Messages as rows: one column per number or text, named by the path of its field, with its unit.
 
 A time gives two columns, ``_s`` for reading and plotting and ``_ns`` for the exact value. Elements

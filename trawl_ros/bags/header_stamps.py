@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Header stamps of stored messages, read with the bag's own types."""
 
 from array import array

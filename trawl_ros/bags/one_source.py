@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Detection of two sources on one topic, and of clocks that only look like two sources.
 
 The channels or stamps of two sources differ, or their readings alternate. A clock that stands still

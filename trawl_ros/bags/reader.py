@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Reader of bags in the order of log times: folders, single MCAP files, and damaged ones.
 
 Everything readable is used; `Bag.problems` lists the faults of the rest.

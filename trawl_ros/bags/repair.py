@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Repair of a bag that was cut short or damaged, or whose metadata are missing or wrong.
 
 The damaged bag is only read. Everything that passes its checksum goes into the new bag, with new

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Stream of samples from one or several bags, with the rejected messages."""
 
 from collections import Counter

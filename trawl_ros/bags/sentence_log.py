@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Log of sentences from a bag, as a recorder on the ship's multiplexer writes it."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Source of a bag's messages: its files, whatever their storage, and its metadata."""
 
 import heapq

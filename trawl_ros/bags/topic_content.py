@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Content of a topic's messages: whether they decode, are possible, and come from one source."""
 
 import math

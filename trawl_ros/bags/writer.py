@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Writer of bags like ``ros2 bag record -s mcap``: a folder, ``metadata.yaml``, MCAP files.
 
 Equal messages give equal bytes: clock, machine and path do not enter.

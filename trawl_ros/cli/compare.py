@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """``trawl compare``, and the output that it shares with ``trawl bag compare``."""
 
 from collections.abc import Sequence

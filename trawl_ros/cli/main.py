@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Command ``trawl``: one file per sub-command, loaded when it is called."""
 
 import os

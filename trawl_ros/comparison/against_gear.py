@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Rows and course of logs against the equilibria of a gear file as it is."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Rows and course of one log against another, aligned by state or in time."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Figures of a comparison: one over the other, differences over operation, and the course."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Reading of a log for a comparison: all steady minutes, and the course of every channel."""
 
 from collections.abc import Callable, Iterator, Mapping

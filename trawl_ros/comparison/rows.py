@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Rows of a comparison, measured and reference values of all channels, and their errors."""
 
 from collections.abc import Sequence

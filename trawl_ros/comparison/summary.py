@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """States and sensors of a comparison: differences with their errors, and trends."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Verdict on a comparison in a sentence, and the next step."""
 
 import math

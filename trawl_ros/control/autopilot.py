@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Autopilot: steers a heading, a course over ground, a track, or toward a school of fish."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Autotrawl: holds set warp lengths, or equal tension in both warps, by wanted warp lengths.
 
 A wanted length is the sum of four parts, each bounded:

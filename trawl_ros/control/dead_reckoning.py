@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Dead reckoning of the ship for the autopilot: heading, position and current from samples."""
 
 import math

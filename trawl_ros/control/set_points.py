@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Set points from outside: checked against limits, and dropped after a timeout."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Track over ground, followed by line-of-sight guidance in a current."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Interface of a controller of both winches, by which one is replaced by another."""
 
 from typing import Protocol

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Array types by element; shapes are given in docstrings, because NumPy cannot check them."""
 
 from typing import TYPE_CHECKING

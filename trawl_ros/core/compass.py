@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Conversion between compass angles, clockwise from north, and the axes of ``map``."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Units in which quantities are printed and read: systems, and units of single quantities."""
 
 import re

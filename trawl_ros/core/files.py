@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Files and folders of results: checked before the work, and written completely or not at all."""
 
 import json

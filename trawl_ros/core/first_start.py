@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """First start on a machine: folder of compiled loops, and messages while they compile."""
 
 import logging

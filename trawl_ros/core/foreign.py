@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Boundary to foreign files: every error in reading them becomes one sentence."""
 
 import json

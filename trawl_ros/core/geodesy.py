@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Conversion between positions in ``map`` and latitude and longitude.
 
 ``map`` is the tangent plane of the ellipsoid WGS 84 at the datum (NIMA TR8350.2). A point is

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Limits of foreign files and messages, in one table.
 
 Each is applied before memory or time is spent. The table is complete: readers import their limits

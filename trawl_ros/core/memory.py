@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Setting of the C library to keep freed memory for the next large array."""
 
 import ctypes

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Addresses and names on which programs of the project listen."""
 
 import ipaddress

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Parallel tasks on Dask: on the cores of this machine, or on a cluster.
 
 A result depends only on its task (random numbers come from a seed in it), and results are assigned

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Progress of long work, as records for a callback."""
 
 from collections.abc import Callable

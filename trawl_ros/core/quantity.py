@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Quantities in files: a number with its unit."""
 
 from trawl_ros.core.schema import Record

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Look-up of files, by path or by name in the package."""
 
 import difflib

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records from YAML files, with strict checks.
 
 Gear, scenario and instrument files all use it, so they refuse the same mistakes in the same words.

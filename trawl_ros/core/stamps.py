@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Validation of stamps: which stamp can be the time of a measurement, and which cannot.
 
 Times are ns since 1970-01-01 UTC. A simulation counts from zero, so stamps within the first year

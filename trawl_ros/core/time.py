@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Time: integer nanoseconds throughout."""
 
 SECOND = 1_000_000_000

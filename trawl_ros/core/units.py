@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Units, each with its quantity, its size in SI and its name."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Validation messages: one sentence for each fault of a record.
 
 Pydantic describes faults in terms of Python. These messages use the terms of the file: its key,

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Diagnosis of a gear: verdict, evidence, and the repair where there is one."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Refit of the boards of a gear to which an earlier diagnosis has added effects."""
 
 from dataclasses import replace

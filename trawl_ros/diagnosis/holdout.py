@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hold-out comparison: kept-back windows predicted without the effect, with it, with a placebo."""
 
 from collections.abc import Mapping, Sequence

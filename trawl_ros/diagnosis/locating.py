@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Localisation of a misfit: channels, and the variables that their residuals follow."""
 
 from dataclasses import dataclass

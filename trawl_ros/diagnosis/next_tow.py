@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Design of the next tow that best discriminates an effect from its rivals."""
 
 import math

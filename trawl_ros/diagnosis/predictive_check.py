@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Quantities that a repair predicts worse on what was kept back, beyond their errors."""
 
 from collections.abc import Sequence

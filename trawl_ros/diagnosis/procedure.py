@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Procedure of a diagnosis: fit, screen, infer, decide, and compare on held-out windows."""
 
 from collections.abc import Sequence

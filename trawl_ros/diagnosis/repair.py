@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Repaired gear file with the effect in it."""
 
 from collections.abc import Sequence

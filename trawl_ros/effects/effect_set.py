@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Effect set: the effects that a gear file switches on, applied one after another."""
 
 from collections.abc import Collection, Mapping

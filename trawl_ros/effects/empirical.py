@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Empirical terms for what no effect of the catalogue explains.
 
 Terms act on one object each: force on the boards, force on ropes and net, or the reading of a

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Catalogue of the known effects: those of `effects/catalogue`, and those of other packages.
 
 Another package adds its own through an entry point of the group `trawl_ros.effects`, whose value is

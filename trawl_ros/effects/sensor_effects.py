@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sensor effects on samples: readings with the errors of a gear file's effects.
 
 The truth does not change. Counters and log show the inputs for which the effects return the true

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Learning from all of the tow in bags, from what their steady windows tell on."""
 
 from collections.abc import Callable, Iterator, Sequence

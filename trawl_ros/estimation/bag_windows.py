@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady windows of bags, each read apart from the others."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Construction of predictor, window finder and estimator for a gear, with its file's prior."""
 
 from dataclasses import replace

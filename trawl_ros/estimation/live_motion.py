@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Learning from all of a tow while it goes on; at its end as from a bag, by the same functions.
 
 What is done depends on the stamps of the samples alone: an estimate is the same at any rate of a

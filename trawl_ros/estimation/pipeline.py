@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Identification pipeline: from samples to estimates, shared by node and ``trawl identify``."""
 
 from collections import Counter

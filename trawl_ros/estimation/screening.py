@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Plausibility screening of channels by the model, within the prior of the board.
 
 Before any tow the board is known within its prior. A steady state far outside what that allows

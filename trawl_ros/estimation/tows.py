@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Tows read in parallel, and brought together in one estimate."""
 
 from collections.abc import Mapping, Sequence

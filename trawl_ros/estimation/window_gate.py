@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Window gate: checks of a window by all channels and its tow, before it reaches the estimate."""
 
 from dataclasses import dataclass

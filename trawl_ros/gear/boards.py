@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of the otter board: its plate, its law, and the prior of its coefficients."""
 
 from itertools import pairwise

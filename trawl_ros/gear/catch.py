@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Catch in the codend: its mass, and the shape of the full codend."""
 
 from dataclasses import dataclass

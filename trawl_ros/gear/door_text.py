@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Copies of gear files under another name, and gear files with a door of the catalogue."""
 
 import re

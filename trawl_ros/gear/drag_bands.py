@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Empirical drag of trawls by twine area and speed: bands to compare a gear file with.
 
 They were fitted to full-scale and model trawls of their time and disagree widely. A drag outside

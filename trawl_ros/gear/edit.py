@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Edits of a gear file's text that change values and keep comments and order."""
 
 from collections.abc import Iterator, Mapping, Sequence

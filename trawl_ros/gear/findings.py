@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Findings in a gear file: values that look wrong, by arithmetic, without building the model."""
 
 from collections.abc import Iterator

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Net plan: pieces of netting as on a paper plan, one row of a table each."""
 
 import re

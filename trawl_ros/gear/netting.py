@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of the netting: its sections or its plan, and its numerical mesh."""
 
 from typing import Annotated, Literal

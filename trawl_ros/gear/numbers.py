@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Kinds of numbers in records of a gear file, with bounds wider than any gear needs."""
 
 from typing import Annotated

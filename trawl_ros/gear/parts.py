@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Names of a gear's parts in texts, in place of those of most gears."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Net plan: read from a table (CSV), written as a section of a gear file."""
 
 import csv

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Polars: lift, drag and centre of pressure of a board over its angle of attack."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of the gear file: every key has its unit, every value is checked on load."""
 
 from typing import Annotated

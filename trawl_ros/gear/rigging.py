@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of ropes and rigging: warps, bridles, sweeps, frame ropes, and bodies on ropes."""
 
 from typing import Annotated, Literal

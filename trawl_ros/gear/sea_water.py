@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of the sea water: density, current and temperature by depth."""
 
 from itertools import pairwise

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Twine of netting: fibres, and properties from a twine's Rtex or diameter."""
 
 from dataclasses import dataclass

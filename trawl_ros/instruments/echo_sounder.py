@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Echo sounder under the keel: depth of the seabed, and of fish above it."""
 
 import math

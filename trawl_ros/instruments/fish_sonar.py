@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Fish sonar of the ship: sweeps of a sector ahead and the schools in it."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sensors that only measure observables of the gear, all built from their rows."""
 
 from collections.abc import Iterable

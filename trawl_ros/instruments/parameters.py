@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Parameters of the instruments as a file has them, checked on load."""
 
 from collections.abc import Callable

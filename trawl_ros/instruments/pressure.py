@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Pressure sensors of doors and trawl sonar."""
 
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan

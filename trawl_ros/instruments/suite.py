@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Suite of all instruments of a ship, in four groups; each group is one node of the graph."""
 
 from collections.abc import Sequence

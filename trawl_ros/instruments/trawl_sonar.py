@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Trawl sonar on the headrope: its image, readings from the image, and sensors in its housing."""
 
 import math

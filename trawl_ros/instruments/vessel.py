@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sensors of the ship: speed log, GPS, compass; with echo sounder and fish sonar."""
 
 import math

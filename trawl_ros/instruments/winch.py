@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Instruments of the winches: counters, pay-out speeds and load cells."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Encoding of messages as CDR, as every ROS 2 middleware understands it, and decoding.
 
 Nodes publish these bytes as they are and bags store them, so there is one encoder.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Encoder of CDR for messages of thousands of points, which generated encoders take one by one."""
 
 import struct

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Command messages to nodes: warp lengths, the ship's speed and rate of turn, and faults."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Diagnostic arrays: status of nodes, and findings of the diagnosis."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Messages of the identification: coefficients, their covariance, and innovations."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Decoding of messages into samples: the reverse of `to_messages`.
 
 Messages may come from bags of other projects and are decoded with the definitions in the bag, so

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Markers of gear and ship for RViz and Foxglove: ropes coloured by tension, doors as plates.
 
 Namespace and id of a marker stay the same in every message, so that viewers replace the earlier

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Reading and writing of parts of messages: vectors, poses, covariances and winches.
 
 Covariances hold the *stated* noise. `UNKNOWN_VARIANCE` marks a component of an orientation or

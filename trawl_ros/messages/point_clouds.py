@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Point clouds of one row of 32-bit floats per point, which every viewer reads."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Conversion of quaternions (x, y, z, w) and roll, pitch, yaw (x forward, y port, z up).
 
 The order is Rz(yaw) Ry(pitch) Rx(roll): with y to port a positive pitch puts the nose down,

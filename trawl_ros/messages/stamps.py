@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Stamps: integer nanoseconds in the project, seconds and nanoseconds in messages."""
 
 import struct

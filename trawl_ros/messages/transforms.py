@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Transforms between frames, and the frames of messages under the names that a user gives."""
 
 from collections.abc import Iterable, Mapping

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Decoding of messages into pieces of truth: the reverse of `truth_to_messages`."""
 
 import math

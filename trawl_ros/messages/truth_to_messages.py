@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Conversion of truth into messages, each as (relative topic name, message)."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Assembly of all forces on the gear, their exact Jacobian, and the mass matrix.
 
 `forces` is the whole right-hand side of eq. 15, 25 and 29 as a function of state, towing

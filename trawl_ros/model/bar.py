@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """One straight bar: tension, drag, added mass and their derivatives (eq. 20-24, 26), compiled.
 
 `trawl_ros.model.line` has tension and drag for arrays of bars, `trawl_ros.model.bar_pass` sums

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """One pass over the bars of a gear: forces, derivatives and masses, summed up where they act.
 
 Ends of bars are numbered as in `trawl_ros.model.gear_model`; properties of bars are

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """The otter board as a rigid body with six degrees of freedom (eq. 1-19).
 
 The physics is written once, in the *outward* frame: x forward, y away from the net's middle, z up.

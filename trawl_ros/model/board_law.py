@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """The law of the otter board (eq. 1-4, 12-14, 19), compiled, one board after another.
 
 Arrays are those of `trawl_ros.model.board`, flattened to ``n`` boards. Numbers are complex, for

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Law of a board from a table: lift, drag and centre of pressure over the angle of attack.
 
 The table is interpolated by monotone cubics: they add no peak between its points and have a

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Compilation of loops, kept in a folder so that only the first start pays for it."""
 
 from collections.abc import Callable

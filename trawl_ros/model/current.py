@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Current of the water at a height, for compiled loops."""
 
 import numpy as np

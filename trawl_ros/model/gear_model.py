@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Gear as arrays: nodes, boards and the bars between them, in one numbering.
 
 Points are numbered nodes first (free), then the boards' fastening points (warp, upper bridle,

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Extension points for physics beyond the paper: coefficient modifiers and node forces.
 
 Water is changed through its profile of currents, ropes and netting through `BarProperties`; these

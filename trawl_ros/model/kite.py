@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Kites: the canvas kite on the headrope (eq. 29-33), and lifting bodies of given lift on ropes.
 
 The canvas kite is compiled for complex numbers, as the boards' law is.

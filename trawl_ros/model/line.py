@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Straight bars of rope, warp or netting: properties, motion, tension and drag (eq. 20-24).
 
 A numerical bar may stand for many real ones side by side; its stiffness, projected and

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """One pass over the nodes of a gear: lumps, sheets of netting, and their derivatives.
 
 Lumps are knots, floats and weights (eq. 22, 28). The lift of a sheet by its solidity is added to

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Mathematics shared by the physics; all of it works with the complex step.
 
 The complex step differentiates a function to rounding: f'(x) = Im f(x + i h) / h (Squire and

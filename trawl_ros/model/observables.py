@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Observables of a state of the gear.
 
 Their loop is compiled for complex numbers, for the complex step, as the boards' law is.

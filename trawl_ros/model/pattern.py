@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sparsity pattern of a gear's matrices, built once with its model."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """One pass over the points of a gear: their motion, and loads and masses of nodes and boards.
 
 Points are numbered as in `trawl_ros.model.gear_model`: nodes, three fastening points of either

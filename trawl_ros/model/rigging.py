@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Parts of a gear as nodes and bars: warps, bridles, net, and the lumps at nodes."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """State of the gear, positions and velocities, and the towing boundary imposed on it."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sea water: density and current as functions of depth."""
 
 from dataclasses import dataclass, field, replace

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`autopilot_node`: steers the ship by compass, GPS, speed log and fish sonar."""
 
 import math

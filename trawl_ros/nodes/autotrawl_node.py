@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`autotrawl_node`: works the winches by what counters and load cells say."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`bag_player`: publishes a bag again, message for message, and ends with it."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`bag_recorder`: writes what is published into a bag, byte by byte."""
 
 from collections.abc import Callable, Iterator, Sequence

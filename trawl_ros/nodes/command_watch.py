@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Watch over the commands to a ship: stamps of another time, and a commander who falls silent."""
 
 from trawl_ros.core.errors import MessageError

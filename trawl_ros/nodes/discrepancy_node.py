@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`discrepancy_node`: says while a tow goes on where model and measurement disagree, and why."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`door_sensor_node`: depth, attitude and spread of the otter boards."""
 
 from collections.abc import Sequence

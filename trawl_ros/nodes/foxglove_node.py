@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`foxglove_node`: shows the topics live in Foxglove or Lichtblick, over a WebSocket."""
 
 from collections import Counter

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`identification_node`: refits the boards' twelve coefficients while samples come in."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Base class of the four instrument nodes: truth in, samples out, on truth's stamps."""
 
 from abc import ABC, abstractmethod

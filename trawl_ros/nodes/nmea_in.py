@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`nmea_in`: publishes what instruments say over serial lines, UDP and TCP."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`nmea_out`: speaks as a chosen ship's instruments do, over serial lines, UDP and TCP."""
 
 from collections.abc import Sequence

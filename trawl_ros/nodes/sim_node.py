@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`sim_node`: tows the gear and publishes the truth of it."""
 
 import math

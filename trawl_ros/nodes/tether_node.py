@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`tether_node`: the gear behind a vehicle of any simulator."""
 
 import math

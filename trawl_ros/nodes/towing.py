@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Tow that obeys commands as they come, beside `Trial`, which follows a scenario's."""
 
 import math

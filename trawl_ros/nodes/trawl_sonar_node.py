@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`trawl_sonar_node`: the trawl sonar's image, what is read off it, and its housing's sensors."""
 
 from collections.abc import Sequence

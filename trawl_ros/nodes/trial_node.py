@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`trial_node`: sails a trial by itself, as far as its operator lets it."""
 
 import math

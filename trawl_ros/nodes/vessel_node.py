@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`vessel_node`: the ship's speed log, GPS, compass, echo sounder and fish sonar."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`view_node`: shows the running graph in Rerun, in a window, on a web page or as a recording."""
 
 from collections.abc import Sequence

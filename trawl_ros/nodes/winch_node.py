@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """`winch_node`: counters, pay-out speeds and load cells of the winches."""
 
 from collections.abc import Sequence

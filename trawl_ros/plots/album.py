@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Pictures of a tow, and the page that shows them all."""
 
 from collections.abc import Callable, Iterator, Sequence

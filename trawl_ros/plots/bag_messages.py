@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Messages of the bags of one tow on one time line, thinned out if there are many."""
 
 import heapq

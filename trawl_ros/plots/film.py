@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Animation of a tow: the gear from above and from the side, and the sonar's picture."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Figures of the gear from above, from the side and from behind."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Time histories of every quantity: truth as thin dark lines, readings as dots, silence as bars."""
 
 from collections.abc import Sequence

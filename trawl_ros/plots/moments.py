@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Moments of a bag: the messages nearest to chosen times, and the sonar's sweeps among them."""
 
 import math

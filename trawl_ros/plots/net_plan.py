@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Figure of a net plan: the pieces of each panel, as a net maker draws them."""
 
 import numpy as np

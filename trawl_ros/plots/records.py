@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records for drawing: series over time, the gear at an instant, a sweep of the sonar."""
 
 from collections.abc import Mapping

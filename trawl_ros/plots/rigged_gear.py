@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Figure of a rigged gear from above, from the side, and from ahead."""
 
 import numpy as np

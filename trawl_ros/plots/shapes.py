@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Shape of the gear at a moment, from the best source in a bag: markers, truth, or readings."""
 
 import math

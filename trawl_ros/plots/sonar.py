@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Figure of a trawl sonar's sweep as on its screen, with the opening read from it."""
 
 import numpy as np

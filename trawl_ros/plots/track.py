@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Figure of the ship's track: track over ground, headings, and current."""
 
 import numpy as np

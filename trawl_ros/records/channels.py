@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Channels of the registry, and the readings of them that samples hold."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Fields of samples for logs and sentences: conversion between samples and single numbers.
 
 Values are SI. A compass angle is clockwise from north; a depth stands for the pressure there.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Frames: where those of sensors are fixed, and the names that a user gives to frames."""
 
 import math

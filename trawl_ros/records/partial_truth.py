@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Partial truth, for instruments that receive only part of it; other values are NaN."""
 
 import math

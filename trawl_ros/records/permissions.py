@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Rights of all nodes of a secured graph as files: policy, governance and permissions.
 
 SROS 2 reads the policy, in the format of ``policy.xsd`` (0.2.0) of the package ``sros2``. It makes

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Bounds of what a ship's instruments can report; values beyond them are not readings."""
 
 import math

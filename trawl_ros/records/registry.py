@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Rows of the registry: a topic, its sensor, and the numbers that the sensor reports.
 
 `trawl_ros.records.topics` and `trawl_ros.records.samples` hold the rows.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Rights of each node: topics it publishes and subscribes to, and services it offers.
 
 A node has only the rights it uses. On a secured graph (SROS 2) an instrument therefore cannot

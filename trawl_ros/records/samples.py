@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Samples of instruments, and the registry of their topics: one record and one row per sensor.
 
 Stamps are integer nanoseconds; units are SI; a ``std`` is the sensor's *stated* noise. Codec,

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Properties of the water for instruments: pressure, and the speed of sound."""
 
 from collections.abc import Callable, Sequence

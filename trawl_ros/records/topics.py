@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Registry of the topics of truth, estimates and commands, and of all topics by name.
 
 Names are relative; a node in namespace ``trawl`` turns ``truth/winch`` into ``/trawl/truth/winch``.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Limits of a tow, the same for files, commands, Python and messages."""
 
 import math

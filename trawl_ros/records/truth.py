@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Ground truth: record of the simulation at one instant, which every instrument observes.
 
 All positions are in ``map`` (ENU, z = 0 at the mean surface, m), all angles in radians,

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Pictures of a report: written to its folder, and embedded in its page."""
 
 import base64

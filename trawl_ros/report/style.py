@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Style of all figures of a tow: colours and axes."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Bridge of a trial: autopilot and autotrawl, with their instruments."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of the controllers in a scenario step: autopilot and autotrawl."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Messages that a trial records: truth and the readings of its instruments."""
 
 from collections.abc import Iterator

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of the scenario file: every key names its unit, and every value is checked on load."""
 
 from typing import Annotated, Any, Literal

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Run of a trial: commands of the scenario at their times, truth at its rate.
 
 Node and command line share it, so a scenario gives the same data in both.

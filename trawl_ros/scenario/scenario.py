@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Scenario: gear, commands of ship and winches, instruments and recording of a trial."""
 
 import math

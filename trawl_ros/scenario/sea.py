@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of the sea of a trial: heave, seabed and schools of fish."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Check of a scenario for steady states, before hours of simulation."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Assembly of samples from several sentences on one topic."""
 
 from collections import defaultdict

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Codec of single sentences: from a frame to readings, and from readings to a sentence."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Texts of single fields: numbers, positions, times of day and dates."""
 
 import math

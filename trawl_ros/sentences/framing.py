@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Frame of a sentence: start, checksum, tag block and IEC 61162-450 header.
 
 NMEA 0183 has ``$``, AIS ``!``, Simrad and Rapp ``@``, Marelec ``#``. A tag block (NMEA 0183

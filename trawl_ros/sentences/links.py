@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """State of live links: their clocks, the source of each topic, and rejected lines."""
 
 from collections import Counter

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Samples from a log of sentences: the sentence used for each topic, and its time."""
 
 import math

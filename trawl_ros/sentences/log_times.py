@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Times of the sentences of a log, of which only some state one.
 
 A sentence of the ship with a time has that time; the date comes from RMC or ZDA. A sentence without

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sentences to a chart plotter: where doors and net are, as TTM, TPR and TPT.
 
 TTM is that of NMEA 0183. TPR and TPT have the form of the manuals of Simrad CS90 and of Marport

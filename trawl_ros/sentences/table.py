@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Table of sentences: a YAML file per system, field by field, with the source of each."""
 
 import re

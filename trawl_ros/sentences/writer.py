@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Writer of sentences: converts samples into the sentences that a system sends of them."""
 
 from collections import defaultdict

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Heave of the ship in waves, as a sum of sines."""
 
 import math

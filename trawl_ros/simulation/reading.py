@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Ground truth of a state: the interface between the model and everything that observes it."""
 
 import numpy as np

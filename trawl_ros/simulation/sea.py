@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sea around ship and gear: heave, seabed and schools of fish."""
 
 from dataclasses import dataclass, field

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Seabed: its depth, and the check for contact with the gear."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Kinematics of ship and winches within their limits of speed and acceleration."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Simulation of a tow in time: ship, winches and gear, from an equilibrium onward."""
 
 from dataclasses import dataclass, replace

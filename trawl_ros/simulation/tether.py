@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Gear behind a vehicle that somebody else moves: its motion in, forces and shape out."""
 
 import math

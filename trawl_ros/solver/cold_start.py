@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Cold start: steady shapes without a known neighbour, by continuation from bowed twine.
 
 Netting has taut bars and slack bars, and Newton steps flip them back and forth without converging.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Pseudo-arclength continuation of steady states in one parameter, around folds.
 
 The shape q and the parameter p are both unknown, and the step along the branch is given (Keller

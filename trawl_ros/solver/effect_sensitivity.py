@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Derivatives of sensor readings by the values of effects.
 
 The change of forces by an effect is a finite difference at the steady state; the linearised gear

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady states: usable roots of the forces, and the reasons why there is none."""
 
 from dataclasses import dataclass, field, replace

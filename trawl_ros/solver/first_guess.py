@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """First guess of the gear's shape, and a known shape shifted to other warp lengths."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady states followed to lower speeds, and the reason why they end.
 
 Where a cold start finds no steady state, one is found at a higher speed and its branch is followed

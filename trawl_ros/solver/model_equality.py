@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Equality of two gear models in the properties on which forces, observables or mass depend.
 
 It saves work: an effect of an instrument changes no gear, and one on a rope changes no board.

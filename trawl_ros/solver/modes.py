@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Modes of the linearised motion M ẍ + C ẋ + K x = 0, by shift-invert and Arnoldi's method."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Operating point of a steady state, and the command that advises on a refused one."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Nonlinear elimination of patches: Newton's method on a few nodes while all others are held.
 
 Where bars of netting flip between slack and taut, only a few nodes still move at the end of an

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Predictions of sensor readings in steady towing, with their derivatives, for identification.
 
 The gear may have effects beyond the model. Their values can be estimated along with the board's

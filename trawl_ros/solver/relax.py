@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Newton with pseudo-transient continuation.
 
 Each step is one implicit Euler step from rest, (M/τ² + C/τ + K) δ = F, with a time step τ that

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Linearisation of the forces at a steady state, with its factors, in a small cache.
 
 Sensitivities, the slow mode, derivatives by net and effects, and the tangent to the next steady

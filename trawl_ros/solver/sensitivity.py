@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Derivatives of all observables at a steady state, by the implicit function theorem.
 
 At a root F(x, p) = 0, so dx/dp = K⁻¹ ∂F/∂p with K = -∂F/∂x; one factorisation serves all

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Slowest mode of the gear: its decay time and its shape in the observables.
 
 After a change of warp length or speed, doors and net sink or rise for minutes, while tension and

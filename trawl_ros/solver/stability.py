@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Stability of a steady state by the eigenvalues of its linearised motion, and its growing mode."""
 
 from dataclasses import dataclass

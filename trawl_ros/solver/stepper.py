@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Time integration: the generalised-α method on rotations and translations.
 
 Second order, implicit, with numerical damping of the fastest axial vibrations of the ropes,

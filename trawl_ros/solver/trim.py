@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Trim: fastening points at which a board works at wanted angles.
 
 With a prescribed attitude, a board's position balances the forces and its fastening points balance

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Warm start: Newton's method along the tangent of a known state, with extrapolated tensions.
 
 Two properties of netting slow down Newton's method. A step across a bar stretches it to second

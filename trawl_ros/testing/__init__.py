@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Pytest plugin for tests of other people's nodes on a towed gear.
 
 It comes with the package. A test asks for the fixture ``trawl_graph`` and opens a graph with it;

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Node by which a test takes part in its graph: it records, commands and hears diagnostics."""
 
 from typing import Any

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """ROS graph of a test: simulation, instruments and the nodes under test."""
 
 import inspect

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Recordings of topics in a test."""
 
 from collections.abc import Callable, Iterable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Display of bags: their messages become records, which go to a log."""
 
 from collections.abc import Callable, Sequence

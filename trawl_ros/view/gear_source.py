@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Shape of the gear during a tow: from markers if there are any, else truth, else readings."""
 
 from typing import Any

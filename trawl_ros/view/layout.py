@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Layout of the view: places of space, sonar, track, histories, estimates and notes."""
 
 from collections.abc import Collection, Iterator, Mapping

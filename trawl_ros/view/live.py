@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Live view: a separate thread shows records in bounded memory, whatever the viewer does."""
 
 import time

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Readings that the gear model predicts in the steady windows of a tow."""
 
 from collections.abc import Iterable, Iterator

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Picture of a tow in the viewer, drawn without a window."""
 
 import time

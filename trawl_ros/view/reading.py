@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Conversion of a tow's messages, in order of arrival, into records to show."""
 
 import math

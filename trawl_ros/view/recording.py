@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Recording of Rerun that goes to a file or to a viewer."""
 
 from collections.abc import Iterator

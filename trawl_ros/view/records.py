@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records to be shown: each at a stamp (ns), in SI units, positions in ``map``."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Adapter to Rerun: converts records into entities of a recording on one time line."""
 
 from collections.abc import Collection, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Scenes of the view: the trawl sonar's screen, and fish and echoes in space and from above."""
 
 from typing import Protocol

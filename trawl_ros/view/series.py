@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Series over time: panel, unit, colour and place of each quantity, and ranges of the panels.
 
 Far outliers must not hide the other readings, and noise must not look large.

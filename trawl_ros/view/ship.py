@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Pose of the ship, from truth or from fixes and compass, and her track from above."""
 
 import math

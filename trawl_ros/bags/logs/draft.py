@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Draft of a mapping: the columns of a log whose names are recognised."""
 
 import csv

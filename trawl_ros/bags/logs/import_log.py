@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Import of foreign logs as bags, by a mapping from columns or sentences to topics.
 
 The whole log is read before anything is written, so that an error in its last line does not leave

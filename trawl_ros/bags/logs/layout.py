@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Layout of loggers' tables: separators, lines above the names, long tables, and numbers."""
 
 import codecs

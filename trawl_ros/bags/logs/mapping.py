@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Mapping files of logs: column and unit of each reading, or sentences of each topic."""
 
 from collections.abc import Iterator

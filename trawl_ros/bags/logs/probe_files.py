@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Files of net-sensor receivers that are no plain tables: Notus, eSonar, NetMind, Scanmar SCD.
 
 Each reader gives rows with one column per sensor, as a table has. A cell is empty where no reading

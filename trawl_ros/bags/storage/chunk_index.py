@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Index of an MCAP file: its summary, its chunks, and their messages in time order."""
 
 import heapq

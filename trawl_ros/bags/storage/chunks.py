@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Chunk of an MCAP file, decoded with checks of sizes and checksums.
 
 Sizes are checked before memory is allocated, and checksums before any content is used.

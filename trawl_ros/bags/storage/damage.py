@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Damaged MCAP file: what can be read of one that was cut short or is wrong in places.
 
 After a break in the chain of records, the next chunk is searched byte by byte. Its header is known

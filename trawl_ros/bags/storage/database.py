@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """SQLite file of rosbag2: the default storage from Foxy to Humble, and optional in later ones.
 
 A database is read without its ``metadata.yaml``; another module compares the two.

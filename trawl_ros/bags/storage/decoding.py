@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Decoders from the definitions in a bag, which define the layout of its bytes.
 
 A database of Foxy to Humble has no definitions. Its distribution is found by trial: a type that

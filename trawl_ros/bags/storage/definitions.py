@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Definitions of message types from a foreign bag: parsed, and checked against the limits.
 
 Codecs are generated from them as Python code, so only identifiers and sizes that were checked here

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """MCAP file opened for reading, also if it was cut short or damaged.
 
 A sound file is read by the index at its end. If that is missing or wrong, the file is scanned

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """MCAP file for writing: chunks with checksums, channels, and an index at its end.
 
 Messages cannot be read without the descriptions of their channels. These are repeated in later

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """``metadata.yaml``, the file next to a bag's data in which rosbag2 describes the bag.
 
 It is written as version 8, which all current distributions read; all versions are read.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Faults of ``metadata.yaml``: against the data, and against what rosbag2 requires.
 
 Keys, kinds and the version that brought each are those of the decoders in

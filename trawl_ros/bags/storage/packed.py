@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Messages and files that rosbag2 compressed (zstd), unpacked as they are read.
 
 Metadata state the compression, but may be lost. A ROS 2 message begins with a zero byte, and a zstd

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Offered quality of service (QoS), as bags store it.
 
 Records and parser are those of ``rosbags``, which knows both forms: up to version 8 a list in a

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Messages and definitions as a bag's file has them, whatever its storage."""
 
 from collections.abc import Collection, Iterable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Output of ``trawl bag info`` and ``trawl bag check``."""
 
 import json

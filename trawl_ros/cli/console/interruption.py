@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Handling of Ctrl-C, deferred to the next safe moment."""
 
 import signal

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Group of commands that are imported when they are called."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Tables on the standard output, with full width if it is not a terminal."""
 
 from rich.console import Console, JustifyMethod

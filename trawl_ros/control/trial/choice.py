@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Choice of the next target among the estimator's proposals, within the trial's limits."""
 
 import math

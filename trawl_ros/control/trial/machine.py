@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """State machine of an autonomous trial: time and readings in, commands and reasons out."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Memory of a trial, with which a stopped trial can continue."""
 
 from pathlib import Path

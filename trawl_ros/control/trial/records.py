@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of a trial: targets, proposals, settings, commands and the report."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Checks of a trial's readings: stale and frozen sensors, and reached limits."""
 
 import math

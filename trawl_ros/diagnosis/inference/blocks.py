@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Adapter from the estimator to the inference: whitened rows of each tow.
 
 All that the inference knows of readings passes through here, so that another estimator takes the

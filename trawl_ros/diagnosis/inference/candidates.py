@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Candidate effects, their start values, and their signatures in the windows."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Decision on the posterior: verdict, what is named, and what is not excluded."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Marginal likelihood of values of hypotheses, all nuisances integrated out.
 
 Readings y are normal with covariance V + A A' + X S X': V of single tows, A of what all tows share

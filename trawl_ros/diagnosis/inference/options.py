@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Numbers of the inference, fitted on trials of development seeds and frozen before scoring."""
 
 from dataclasses import dataclass, field

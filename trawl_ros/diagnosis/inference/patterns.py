@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Patterns of a channel's residuals, whatever their cause: a few simple shapes."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Posterior over sets of hypotheses: first order for all, refitted for those that matter."""
 
 from collections.abc import Iterator, Mapping, Sequence

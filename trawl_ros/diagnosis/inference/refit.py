@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Joint refit of boards and effects, all windows solved anew, from first-order values."""
 
 from collections.abc import Sequence

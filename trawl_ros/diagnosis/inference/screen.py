@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Screen of all hypotheses to first order, from the fit of the boards alone."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """H?: something that no hypothesis of the library is, as smooth functions of few quantities.
 
 Each pattern is the residual of one channel that follows warp length, speed, time or course, with

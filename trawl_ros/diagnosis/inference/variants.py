@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Variants of a hypothesis: which of its values differ, and how far, with their prior.
 
 A cause with several values mostly differs in one of them, and its size is usual or unusual. Both

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Drifts of instruments: what goes with time may be an instrument as well as the gear."""
 
 from collections.abc import Iterator

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hypotheses that a diagnosis of one gear compares: entries of the library at their nodes."""
 
 from collections import Counter

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Effect that changes numbers at keys of a gear file and builds the gear anew."""
 
 import re

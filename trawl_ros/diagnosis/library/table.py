@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Tables of hypotheses: their places in the tree of causes, base rates and sizes, as YAML."""
 
 from functools import cache

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Candidates for what begins during a tow: the catalogue's effects, and patterns of channels."""
 
 from collections.abc import Iterable, Mapping, Sequence

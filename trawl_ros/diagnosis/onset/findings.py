@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Findings of a tow that goes on: what has begun, when, how large, and what it is not told from."""
 
 from collections.abc import Mapping

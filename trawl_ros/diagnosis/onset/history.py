@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Course of a watched tow: its innovations and the evidence for what may have begun, over time."""
 
 from dataclasses import dataclass

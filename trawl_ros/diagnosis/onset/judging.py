@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Judging of the evidence after a stretch: the finding it makes, its onset, values and names."""
 
 from collections.abc import Sequence

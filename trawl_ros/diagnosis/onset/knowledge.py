@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Knowledge of the boards, and of how large errors are, with which a tow is watched."""
 
 from collections.abc import Mapping

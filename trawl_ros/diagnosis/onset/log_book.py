@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Log book of findings: who was told what and when, a line of JSON for each event."""
 
 import json

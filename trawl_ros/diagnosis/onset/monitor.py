@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Monitor of a tow that goes on: raises a finding minutes after an effect begins.
 
 The model is towed along each stretch once, as it comes. Where boards are learned to be others than

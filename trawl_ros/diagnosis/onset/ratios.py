@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Likelihood ratios of what may have begun, over all onsets in a window.
 
 Window-limited generalised likelihood ratios (Willsky and Jones, IEEE Trans. Automat. Contr. 21,

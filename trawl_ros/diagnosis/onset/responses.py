@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Responses of the gear to effects that begin, as they fade into those of effects long there.
 
 What an effect changes after its onset is what it would change had it been there for long, less a

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Stretches of a tow that goes on: the newest cut out of the readings of the last minutes."""
 
 from collections import deque

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Tow of the model along a tow that goes on, with derivatives by all that may begin in it."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Onsets in tows that are over: the monitor fed from recordings, as the node is from topics."""
 
 from collections.abc import Iterable, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Watch over a tow: the model towed along with it, its innovations, and the evidence in them."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Whitening filter: innovations of a tow that goes on, and what a signature leaves in them.
 
 A Kalman filter over all that may be wrong without an effect: coefficients as far as they are

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Values in the units of a ship's bridge and deck, beside SI."""
 
 from trawl_ros.core.units import UNITS

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Values of an effect that are known together and not each alone."""
 
 from collections.abc import Iterator

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Figure of a finding as it comes up in a watched tow."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Content of ``diagnosis.json``: a diagnosis as plain numbers."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sentences of a diagnosis, the verdict first."""
 
 from trawl_ros.diagnosis.diagnosis import BoardsMoved, Diagnosis, values_of

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Paragraph that says what to do now, after a diagnosis."""
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Base class of effects: physics beyond the model, or an error of an instrument.
 
 An effect acts in one or more of three places: on the inputs, warp lengths and speed

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Effects of the boards: their law, their rigging, their damage, their added mass."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Effects of the net with its floats and kite, and of the catch."""
 
 from dataclasses import dataclass, replace

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Effects of warps, bridles, and of the weights of boards and clumps."""
 
 from dataclasses import dataclass, replace

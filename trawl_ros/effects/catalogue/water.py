@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Effects of the water: currents, leeway, sea and ground."""
 
 from dataclasses import dataclass, replace

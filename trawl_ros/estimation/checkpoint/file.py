@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Checkpoint of a running identification in one file, from which it can be resumed.
 
 The file is a zip archive without compression: ``state.json`` and the numbers of all arrays in

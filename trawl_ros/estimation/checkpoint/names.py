@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Names that classes had in checkpoints of version 0.1.0."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Checkpoint format: objects of the identification as JSON and raw numbers, bit by bit.
 
 Classes change and a saved file must not decide what is built: only classes of the packages

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Calibration errors of each tow's instruments, and factors on drag and weight of the net."""
 
 import numpy as np

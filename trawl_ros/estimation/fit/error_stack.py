@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Errors of tows with different numbers of windows as one stack, that all are worked on at once."""
 
 from collections.abc import Sequence

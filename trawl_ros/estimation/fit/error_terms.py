@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Error budget of the readings of a tow: error terms and their course over its windows.
 
 Four kinds of error stand between a reading and the model: those of the single reading (scatter,

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Posterior estimate after a window: values, covariance, and undetermined combinations."""
 
 from collections.abc import Mapping, Sequence

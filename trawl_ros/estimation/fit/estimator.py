@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Robust bounded Gauss–Newton over steady windows, in square-root information form.
 
 For constant parameters this is an iterated Kalman filter: every window stays in memory with

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Fit of all windows at one set of coefficients: cost, square-root information, posterior."""
 
 from dataclasses import dataclass, field, replace

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Gauss–Newton step of the linearised fit, iterated with weights and noise scales.
 
 Weights of a robust loss, noise found from residuals and coefficients depend on each other, and

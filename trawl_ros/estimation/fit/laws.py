@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """The six laws of eq. 14 at the working angles: value and slope of each."""
 
 from collections.abc import Iterable

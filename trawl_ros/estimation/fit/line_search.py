@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Line search along a Gauss–Newton step, with the windows solved anew where it leads."""
 
 from collections.abc import Sequence

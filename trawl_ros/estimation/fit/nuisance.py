@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Nuisance elimination: square-root information of the coefficients alone.
 
 A reading's residual is r = ε + G δ + U ν + M μ + J Δ: the reading's own error ε of variance D,

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Objective of eq. 35 and the errors in its four channels."""
 
 from collections.abc import Mapping, Sequence

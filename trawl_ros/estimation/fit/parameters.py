@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Parameter vector of a fit: groups of parameters, with names, units, prior and bounds."""
 
 from collections.abc import Iterator, Mapping

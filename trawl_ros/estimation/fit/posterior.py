@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Posterior of a fit: its estimate, and the innovations of a window before it is used."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Protocols of predictors: the estimator's interface to a model of the gear."""
 
 from typing import TYPE_CHECKING, Protocol, runtime_checkable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Redundancy of readings: the share of their variance that is their own; roots of covariances."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Relinearisation: choice of the windows to solve anew as the estimate moves, and their fit."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Whiteness of residuals in order of time: the Ljung–Box test."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Step of a bounded least-squares problem whose parameters have unit normal priors."""
 
 from collections.abc import Sequence

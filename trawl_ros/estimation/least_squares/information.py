@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Information of blocks of data on their parameters: joined, the blocks' own ones eliminated."""
 
 from collections.abc import Sequence

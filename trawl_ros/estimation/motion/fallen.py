@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Falls of boards in a tow, as their inclinometers show them."""
 
 from collections import deque

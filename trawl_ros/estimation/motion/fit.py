@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Levenberg-Marquardt over tows in motion: linearised anew until the estimate is at rest."""
 
 from collections.abc import Sequence

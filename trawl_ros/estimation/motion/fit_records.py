@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of the fit in motion: its options, and its result."""
 
 from dataclasses import dataclass, field

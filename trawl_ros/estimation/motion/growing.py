@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Linearisation, at one place, of tows that grow."""
 
 from collections.abc import Sequence

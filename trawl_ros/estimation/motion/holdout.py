@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hold-out of steady states from a fit in motion, at the place where its tows are linearised."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Information of whitened stretches on the parameters, group by group of channels."""
 
 from collections.abc import Sequence

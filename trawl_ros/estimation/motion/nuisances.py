@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Columns of a linearised tow by all its parameters, each in units of its prior std.
 
 Parameters that all tows share come first: coefficients, added mass, the net's factors where these

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Outcome of learning from all of a tow, beside what its steady windows tell."""
 
 from collections.abc import Mapping

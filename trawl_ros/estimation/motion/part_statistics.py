@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Statistics of each part of a tow: scatter and dominant period of tensions, depths and rolls.
 
 They are no data for the coefficients. They tell a ship that heaves, netting that strums and a load

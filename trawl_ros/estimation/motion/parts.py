@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Parts of a tow between the silences of its counters, log and winches."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Errors of stretches as stated processes: noise, drifts of sensors, and the model's own error.
 
 The error of a mean is the sum of five: its own, which no other mean shares; two first-order

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Search of a fit in motion: the place of least cost, and the steps that lead there."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Series of one channel's readings through a tow: false echoes and outliers set aside, noise."""
 
 from collections.abc import Callable, Iterable, Mapping

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sizes of the errors by the marginal likelihood of all data, with a prior on each size."""
 
 from collections.abc import Sequence

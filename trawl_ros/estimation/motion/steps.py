@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steps of the fit in motion: least squares within bounds, damped, and the cost of a place."""
 
 from collections.abc import Sequence

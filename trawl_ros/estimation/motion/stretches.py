@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Stretches of a tow: means of its readings, and the inputs that it was towed with."""
 
 from dataclasses import dataclass

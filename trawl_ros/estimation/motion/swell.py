@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Swell that a tow feels, by how its warps' tension swings within stretches."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Fit of tows that grow: solved anew with each stretch, linearised anew where it has moved.
 
 The model is towed along each stretch of the tows once, as it comes, and what is linearised so far

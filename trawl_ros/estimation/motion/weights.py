@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Robust weights of means: those that no other mean of their channels bears out count less."""
 
 import numpy as np

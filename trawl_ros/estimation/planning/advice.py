@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Advice on the next manoeuvre, and the ranking behind it."""
 
 from dataclasses import dataclass

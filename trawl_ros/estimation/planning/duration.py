@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Duration of manoeuvres, and the order of a trial.
 
 Warp lengths rise through a trial, so that each metre is paid out once. While warp runs out, the

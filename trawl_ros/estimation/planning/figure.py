@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Figure of a plan: its legs, and the std of the quantities after it."""
 
 from collections import Counter

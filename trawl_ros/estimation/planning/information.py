@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Information matrices of windows: of the coefficients, with shared errors as unknowns.
 
 Information of independent windows adds up when that which they share is counted among the

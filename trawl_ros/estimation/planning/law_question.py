@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Question about the laws of the boards, as a fit puts it on the way."""
 
 from dataclasses import dataclass

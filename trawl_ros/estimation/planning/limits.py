@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Limits of knowledge after a trial: reasons why a quantity stays badly known."""
 
 from collections.abc import Mapping, Sequence

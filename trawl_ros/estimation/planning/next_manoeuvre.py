@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Next manoeuvre: the most informative one from the present state of a fit."""
 
 from collections import Counter

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Trial planning: the most informative trial in a given time, beside the paper's sweep."""
 
 from collections.abc import Mapping, Sequence

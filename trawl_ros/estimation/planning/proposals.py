@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Proposals for a trial that runs itself, from the advice on the next manoeuvre."""
 
 from trawl_ros.control.trial.records import Knowledge, Proposal, TrialTarget

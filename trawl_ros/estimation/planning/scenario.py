@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Scenario file of a plan, for ``trawl tow``."""
 
 from trawl_ros.estimation.planning.states import Manoeuvre

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Candidate steady states of a trial, and the predictions in each.
 
 A turn is not among them: a gear that is towed around has no steady state in fixed axes. Nor is an

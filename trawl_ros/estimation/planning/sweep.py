@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sweep of the paper's trial: warp lengths out and back at one speed."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Figures of the fit and its data."""
 
 from collections.abc import Sequence

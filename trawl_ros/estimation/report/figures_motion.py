@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Figure of what all of the tow adds to its steady windows."""
 
 import numpy as np

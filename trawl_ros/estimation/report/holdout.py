@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hold-out errors: prediction of whole tows, or whole steady states, left out of the fit."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Report on tows without one steady window: all of it is by their motion."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Rows, sentences and JSON on what all of the tow adds to its steady windows."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sentences and JSON on the factors on drag and weight of the net."""
 
 from collections.abc import Sequence

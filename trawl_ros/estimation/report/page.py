@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Files of an identification: JSON, figures, and a self-contained HTML page."""
 
 import math

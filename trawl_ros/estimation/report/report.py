@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Report of an identification, computed once for JSON, figures and page."""
 
 from collections.abc import Sequence

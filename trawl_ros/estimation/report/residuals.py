@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Residuals of each channel, window by window, and their statistics."""
 
 from collections.abc import Sequence

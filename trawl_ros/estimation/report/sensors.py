@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Measured beside predicted, sensor by sensor, in the units of the field."""
 
 from collections.abc import Mapping, Sequence

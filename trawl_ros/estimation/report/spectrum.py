@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Spectrum of information over directions among the coefficients."""
 
 from dataclasses import dataclass

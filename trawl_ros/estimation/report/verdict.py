@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Verdict on an identification, in sentences; the first one is the verdict itself."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Buffers of readings that wait for their window: checked, sorted by stamp, bounded in memory."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Mean of one channel in one window, or the reason why it has none that can be used."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Window finder: steady windows in a stream of samples.
 
 Windows lie on a grid of header stamps, and a window is decided only when all channels that

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Noise density of each channel: what averaging over a time leaves, as steady windows show it."""
 
 from collections.abc import Mapping, Sequence

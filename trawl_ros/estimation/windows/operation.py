@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Operation of the gear, block by block: check for inputs held long enough."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Check of the speed log against compass and GPS: logs that give speed over ground.
 
 Over ground a ship moves as she does through the water and as the water does. What a true log

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of steady windows and rejections, and the options that decide on both."""
 
 import math

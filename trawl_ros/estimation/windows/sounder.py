@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Depth of the water in a window, from the echo sounder."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Statistics of correlated readings: means, their errors, trends, outliers and stuck sensors."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Timestamp check of a channel: late, duplicate and leaping stamps are told apart.
 
 The verdict on a reading depends on the readings of its own channel alone, so it is the same

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Wrong units of instruments, and the factors by which they change a value."""
 
 from collections.abc import Mapping

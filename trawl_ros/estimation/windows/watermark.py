@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Watermark by the stamps of the winches: without warp lengths there are no windows."""
 
 from dataclasses import dataclass

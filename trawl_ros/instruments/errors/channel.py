@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Measurement channel: one quantity with its errors.
 
     reading = quantised(limited((1 + scale) truth + offset + drift + bias + noise

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Faults of sensors on command: their kinds, places and switching.
 
 A fault is written as a word and, if it has a size, a number in the SI unit of the quantity:

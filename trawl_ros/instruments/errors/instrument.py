@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Base class of instruments: sampling clock, channels with errors, faults, and a seed."""
 
 from abc import ABC, abstractmethod

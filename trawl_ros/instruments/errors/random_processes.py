@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Random processes of errors: noise, bursts of trouble, and false echoes, each with a generator.
 
 Each generator follows from one seed and a name. So one process draws the same numbers whatever

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of a channel's errors in a file: one per unit, every key with its unit."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Timing of samples: rate, jitter, latency, dropouts and start-up."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Echoes in the beams of the trawl sonar: ropes, twine, fish and the seabed.
 
 All echoes are backscattering cross-sections σ in m²; 10 log σ is the target strength. They are

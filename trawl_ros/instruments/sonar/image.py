@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Grid of the sonar's image: beams by angle, cells by range."""
 
 from dataclasses import dataclass

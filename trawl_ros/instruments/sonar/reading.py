@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Readings of the net's openings from an image of the trawl sonar, as an operator takes them.
 
 Input is the image with the meaning of its rows, columns and brightness only. The net is a line of

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of the trawl sonar in a file, without its timing."""
 
 from typing import Annotated

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Running mean, median and least value over neighbours.
 
 They equal those of scipy.ndimage, whose import takes 12 MB and a quarter of a second.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Receiver and screen: from echoes to an 8-bit image with noise and speckle."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sweep of the trawl sonar: pings made while the gear moves, combined into an image."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Controllers of the bench: those of the project, and a class of somebody else."""
 
 import math

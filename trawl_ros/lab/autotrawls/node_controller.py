@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Controller of the bench that is a node: readings go out to it, and its commands come back."""
 
 import os

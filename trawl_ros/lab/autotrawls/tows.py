@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Tows of the bench: a scenario with a controller of the winches, and its scores."""
 
 from dataclasses import dataclass

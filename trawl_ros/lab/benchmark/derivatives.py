@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Time of a step with and without the derivatives of the motion by twenty parameters."""
 
 import gc

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady states of the full gear, warm and cold, compared with codes that solve less."""
 
 import math

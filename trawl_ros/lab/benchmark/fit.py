@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Cost of one fit of the coefficients, as the number of steady states that it solves."""
 
 from collections.abc import Sequence

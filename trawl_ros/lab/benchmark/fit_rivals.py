@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Other optimisers of the twelve coefficients, for comparison in the benchmark."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Publisher of all topics of the project at a steady rate, for measurements of the recorder.
 
 Messages are valid and as large as on a tow; their content has no meaning.

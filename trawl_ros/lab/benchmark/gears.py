@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Gears of the benchmark."""
 
 from trawl_ros.gear.load import load_gear

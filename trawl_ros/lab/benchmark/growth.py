@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Growth of time and memory as the net is refined, around and along together."""
 
 import sys

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hauling manoeuvre at several step sizes, with an identical motion of ship and winches."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Modules of the benchmark, in the order of the report."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Calibration of estimates from a whole tow in motion, with the model as its own plant."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Tows of the model itself, read by the default instruments, and fitted as a whole."""
 
 from dataclasses import dataclass, replace

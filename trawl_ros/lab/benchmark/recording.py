@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Losses and cost of the recorder at the rates of all topics together."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Start-up time of the nodes to their first message, the share of imports, and memory."""
 
 import math

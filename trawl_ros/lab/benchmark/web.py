@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Speed of MoorDyn on a web as large as the gear, at its largest stable step."""
 
 import math

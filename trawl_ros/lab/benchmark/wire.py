@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Speed of one towed wire through a manoeuvre, here and in MoorDyn, at steps of equal error."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """``trawl bench``: tow the same scenarios with several controllers, and compare them."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """``trawl benchmark``: measure the speed, compare it with other codes, and write the report."""
 
 import time

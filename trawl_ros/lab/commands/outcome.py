@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Progress and outcome of the lab's commands on the terminal."""
 
 from collections.abc import Iterable, Iterator, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """``trawl validate``: check the model's claims and write the report."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """``trawl demo``: the whole chain through the real ROS graph, one process per node."""
 
 import json

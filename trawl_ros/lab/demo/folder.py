@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Folder of a demo's results, and the check before an older one is replaced."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Last part of the demo: diagnose tows in a current that the model lacks, and repair the model.
 
 It uses the commands and nodes of the package, each as a separate process.

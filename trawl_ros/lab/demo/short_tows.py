@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Second part of the short demo: tows with a log that errs, as steady states, and their diagnosis.
 
 Nothing is towed in time here: each state is the equilibrium of the plant, read by instruments with

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Lines at the end of the short demo, in an engineer's words."""
 
 from collections.abc import Mapping

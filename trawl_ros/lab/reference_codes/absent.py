@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Import of reference codes, with a clear error if one is not installed."""
 
 from importlib import import_module

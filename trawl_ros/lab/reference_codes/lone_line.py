@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Single line of rope, with the same kernel, assembly and solvers as a whole gear.
 
 A gear model always has boards. Here they float next to the line, without ropes or area, and as

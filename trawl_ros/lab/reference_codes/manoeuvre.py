@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Manoeuvre of hauling and turning as smooth functions of time, and histories of it.
 
 Any program can follow the manoeuvre; histories of two programs can be compared.

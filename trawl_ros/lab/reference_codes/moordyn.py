@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """MoorDyn: its input file, and a running system."""
 
 import ctypes

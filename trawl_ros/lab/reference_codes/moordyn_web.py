@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Web of a gear's ropes and netting as lines in MoorDyn, towed by prescribed doors."""
 
 import time

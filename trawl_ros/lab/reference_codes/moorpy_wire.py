@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady towed wire in MoorPy: a catenary under its weight and mean drag.
 
 The wire stands still in a current. MoorPy takes the drag on a line's last shape as constant

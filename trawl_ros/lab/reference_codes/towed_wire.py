@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Towed wire of the comparisons: its properties and its steady state."""
 
 from dataclasses import dataclass

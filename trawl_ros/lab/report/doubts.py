@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Factors on an assumed number that bring a point near its measured value."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Measured value with its target range: the row of every report of the lab."""
 
 import math

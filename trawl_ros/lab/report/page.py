@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Report of measured values: JSON, Markdown and HTML, with tables and pictures."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Simulation, instruments and recorder as processes."""
 
 from collections.abc import Sequence

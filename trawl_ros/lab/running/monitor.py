@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Monitor of a running graph: the nodes' diagnostics, and requests to them."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Separate ROS domain, so that two demos at the same time do not receive each other's messages."""
 
 import random

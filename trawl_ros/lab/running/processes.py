@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Processes of nodes, which are started, watched and ended together."""
 
 import json

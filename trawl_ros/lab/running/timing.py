@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """CPU time of the benchmark: clock, shares of functions, and bytecode of child processes."""
 
 import cProfile

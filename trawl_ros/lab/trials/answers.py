@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Right answers to blind trials: leaves of the library for each hidden cause, fixed beforehand."""
 
 from collections.abc import Iterable, Mapping

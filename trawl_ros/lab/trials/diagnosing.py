@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Blind diagnosis of a trial from a file of windows, or a folder of bags."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Plants of the blind cases, the models fitted to them, and the observables of drawn boards."""
 
 from dataclasses import dataclass

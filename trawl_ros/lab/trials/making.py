@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Construction of blind cases: visible data, and the key."""
 
 from collections.abc import Mapping, Sequence

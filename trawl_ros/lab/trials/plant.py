@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Plant of a trial: a gear that differs from the model, towed with hidden effects."""
 
 from collections.abc import Mapping, Sequence

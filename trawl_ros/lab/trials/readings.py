@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Windows of a plant from instruments, with correlated noise and calibration errors per tow."""
 
 from collections.abc import Mapping, Sequence

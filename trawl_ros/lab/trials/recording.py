@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Bags of a blind case: samples of a tow with the instruments' errors."""
 
 from collections.abc import Iterator, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Detectable size of a hidden effect, from the plant's own likelihood.
 
 The plant is linearised around its board. The change by the effect is compared with the errors of

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Simulation of planned tows: the gear is hauled, veered and left to reach a steady state."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Planned cases: their steady states, courses and times."""
 
 from collections.abc import Mapping

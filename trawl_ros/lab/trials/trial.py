@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of a blind case: its specification, its key, and its diagnosis."""
 
 from collections.abc import Mapping

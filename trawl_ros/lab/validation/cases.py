@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """The cases of ``trawl validate``, in the order of the report."""
 
 from collections.abc import Callable, Mapping

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Validation of the model: runs cases in parallel, each in its own process, and reports them."""
 
 import multiprocessing

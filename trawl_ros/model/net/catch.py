@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Catch on the codend's line: its place, and its lumps at the nodes there."""
 
 from dataclasses import dataclass

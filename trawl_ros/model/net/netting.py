@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Grouping of the netting: a tube of numerical diamond meshes, each of which stands for many.
 
 The length of a row makes ``around`` numerical meshes as wide as all real meshes together: rest

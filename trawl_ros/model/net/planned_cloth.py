@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Netting of a planned net at each place of it, panel by panel."""
 
 from collections.abc import Mapping

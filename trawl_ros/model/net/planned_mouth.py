@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Mouth of a planned net: the nodes of its wings ahead of it, and its frame of ropes.
 
 The angle of a node from the top is an integer number of half pitches, ``half`` in 0 … 2 ``around``,

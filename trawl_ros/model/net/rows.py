@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Netting along its length: the profile of the real netting, and the rows of grouped bars."""
 
 from bisect import bisect_right

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Sheets of a net: the netting around each node, for the lift by its solidity."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Drag of twine and knots: reduction in sheets of netting, increase at low Reynolds numbers Re.
 
 Twines lie in each other's wakes, and the water speeds up between them. Along a sheet the water has

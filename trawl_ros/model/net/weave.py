@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Nodes and bars of a net, row by row, for any outline of the mouth and any netting."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Derivatives of warp forces and of M a along directions of positions and towing boundary.
 
 `trawl_ros.model.assembly.linearised` has the derivatives of forces by positions and velocities;

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Observables of a state and their derivatives along directions, in one pass."""
 
 import numpy as np

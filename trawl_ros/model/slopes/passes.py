@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Passes over bars: derivatives of forces and of M a, the force that accelerates them; compiled.
 
 Ends, properties, water and slots are those of `trawl_ros.model.bar_pass`. The ropes at blocks and

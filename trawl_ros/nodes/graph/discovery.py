@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Discovery of nodes by each other: Fast DDS announces a node more often than by default."""
 
 import os

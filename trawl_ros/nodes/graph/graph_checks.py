@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Checks of the ROS graph: two clocks or sources, other types or QoS than expected."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Security of the graph as the environment asks for it, which is never passed over in silence.
 
 ROS 2 reads ``ROS_SECURITY_ENABLE``, ``ROS_SECURITY_STRATEGY`` and ``ROS_SECURITY_KEYSTORE``.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Source of a subscription: one publisher, told from others by the numbers of its messages.
 
 ROS gives subscribers no name of who has sent a message, but the number that its publisher gave it.

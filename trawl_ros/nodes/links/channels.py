@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Links for sentences: serial ports, pseudo-terminals, UDP and TCP, each opened again when lost.
 
 An address is a text: ``udp://HOST:PORT``, ``tcp://HOST:PORT``, ``tcp-listen://HOST:PORT``,

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """WebSocket server for viewers by Foxglove's protocol, in a thread of its own.
 
 Protocol: https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Conversion of quality of service (QoS) from graph to bag, and back."""
 
 from collections.abc import Collection, Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Replayed topics of a bag: those that can be published here, and their QoS."""
 
 from collections.abc import Collection, Iterator

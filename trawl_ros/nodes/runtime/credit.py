@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Flow control: consumers report their progress, and sources wait for the slowest.
 
 An acknowledged message is not a processed one: DDS says that the bytes have arrived, not that

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Parameters of the datum: where on Earth the origin of ``map`` is."""
 
 from trawl_ros.instruments.parameters import VesselParameters

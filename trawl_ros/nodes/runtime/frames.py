@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Parameters of a node for the names of its frames."""
 
 from trawl_ros.nodes.runtime.parameters import Flag, ParameterError, Parameters, Spec, Text

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Incoming messages: decoded in turns, and no error of a message or its handler ends a node."""
 
 import inspect

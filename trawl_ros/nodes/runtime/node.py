@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Base class of all nodes: parameters, diagnostics, a clean end."""
 
 import time

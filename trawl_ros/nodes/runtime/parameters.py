@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Parameters of nodes: each with a unit, a range and a sentence, checked whenever it is set."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Checks of instrument readings: possible values, one source, and streams that begin again."""
 
 from collections import defaultdict

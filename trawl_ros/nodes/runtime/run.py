@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Runtime of a node: from the command line to a spinning node and to a clean end."""
 
 import logging

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Statistics of a node: counts, rates and ages of messages by topic, and its real-time factor."""
 
 import time

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Transforms that nodes send: mounts of sensors, and the pose of a real ship."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Worker thread that advises on the next manoeuvre, with time that nothing else needs."""
 
 import time

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Worker thread that diagnoses a tow in progress."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Diagnostic statuses of an identification, for ``identification/status``."""
 
 from trawl_ros.estimation.fit.estimate import Estimate

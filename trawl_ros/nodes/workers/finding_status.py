@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Diagnostic statuses of a diagnosis and of what begins, for ``discrepancy/findings``."""
 
 from collections.abc import Mapping

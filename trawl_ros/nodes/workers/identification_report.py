@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Report that an identification ends with: of its windows, and of all of the tow where wanted."""
 
 from dataclasses import replace

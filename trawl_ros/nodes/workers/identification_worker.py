@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Worker thread of the estimator, so that solving a window blocks no callback.
 
 Only this thread ever touches the `Identification`. Work comes in through one queue, in order;

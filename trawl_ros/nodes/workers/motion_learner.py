@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Learning from all of the tow beside its steady windows: what fails in it is told, no more."""
 
 from dataclasses import dataclass, replace

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Worker thread that watches a tow in progress for effects that begin in it."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Outcome of an identification in a thread of its own, as immutable records."""
 
 from collections.abc import Mapping

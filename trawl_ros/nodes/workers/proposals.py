@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Proposals for a trial as a diagnostic status, in ``identification/status``."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Parameters of nodes that estimate: windows, and advice on the next manoeuvre."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Worker thread that does queued work in order and survives its errors."""
 
 from abc import ABC, abstractmethod

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Advice on a refused tow: the speed from which the gear can be towed, and helpful changes.
 
 Changes of the rigging are ranked by the effect of a small one on the growth of the least stable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Changes of a rigging: fastening points, weights, floats, bridles, warp, and lighter boards."""
 
 from collections.abc import Callable, Sequence

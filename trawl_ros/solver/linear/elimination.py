@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Symbolic factorisation of a gear's matrices: order of elimination, fronts and their assembly.
 
 Unknowns come in threes (a node; a board's place; its turn), so the graph that is eliminated has a

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Compiled factorisation front by front, and solution with the factors.
 
 Fronts are dense and row-major. Pivots are exchanged only within the pivot rows of a front, so the

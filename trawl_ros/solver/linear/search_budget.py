@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Budget of a search for a steady state: the work after which it is given up.
 
 Work is counted and not timed, so that a gear has the same answer on any machine.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Towing boundary of a gear along given inputs, with its derivatives by parameters.
 
 Warp lengths and speed are given as counters and log show them; the effects that act give the true

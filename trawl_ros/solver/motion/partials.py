@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Derivatives of F - M a at the end of a step by parameters, all motion held.
 
 Derivatives by the boards' coefficients use the complex step. Those by drag and weight of the net

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Observables of a gear in motion and their derivatives."""
 
 from dataclasses import dataclass

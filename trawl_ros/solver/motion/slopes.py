@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Derivatives of a motion by parameters, from one time step to the next.
 
 A step solves F(q, v) = M a for the new acceleration, with q and v linear in it. The derivative of

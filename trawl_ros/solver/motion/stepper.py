@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Time stepper that linearises each step at its root."""
 
 from dataclasses import dataclass

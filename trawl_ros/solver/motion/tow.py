@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Tow of a gear along given inputs, with the derivatives of its motion by parameters.
 
 Memory is that of one state and its derivatives, however long the tow.

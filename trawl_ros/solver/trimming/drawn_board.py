@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Random boards: coefficients drawn from the gear's prior, and rigged as a crew would.
 
 The fastening points of one board rarely suit another: drawn moments turn it over. A crew moves the

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Boards held at an attitude: the pulls of ropes on them, and their stiffness.
 
 Both boards are held at mirrored attitudes, and the rest of the gear is in equilibrium. Static

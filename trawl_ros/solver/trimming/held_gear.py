@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Gear with boards held at one attitude: its shapes at several operating points."""
 
 from collections.abc import Sequence

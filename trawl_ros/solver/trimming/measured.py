@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Angles of boards from the measured spread and depth at one operating point.
 
 The position of a held board balances lift, drag, weight and ropes. Attack determines its spread

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """A door of the catalogue on a gear: shackle points at which its boards have a usable state.
 
 Fastening points belong to the loads of a door, so another door needs others. The search tries a few

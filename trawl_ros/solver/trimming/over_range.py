@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Trim over a range: fastening points at which boards work as wanted at many speeds and warps.
 
 Nine coordinates of three points balance three moments at one operating point; six remain free. They

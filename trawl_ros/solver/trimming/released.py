@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Trim of released boards: fastening points that give nearly the wanted angles over a range.
 
 The search of `over_range` holds the boards and considers their stiffness. Here they are free, so

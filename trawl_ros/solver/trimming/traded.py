@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Trim that may also change bridles, weights, floats or boards, if points are not enough."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Page of the viewer, which may connect only to the data of the tow.
 
 Rerun's own page sends usage statistics and requests news and a font, and has no setting against

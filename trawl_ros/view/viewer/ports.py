@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Addresses and ports on which a viewer is to listen."""
 
 import ipaddress

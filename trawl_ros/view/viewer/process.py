@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Program of Rerun as a process that listens on a port, with its usage statistics off."""
 
 import os

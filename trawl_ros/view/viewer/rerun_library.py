@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Import of Rerun, with a clear error if it is not installed."""
 
 from pathlib import Path

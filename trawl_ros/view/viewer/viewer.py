@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Viewer of Rerun: its window, or its page in a browser; by default for this machine only."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady part of a tow: the equilibrium of held inputs, and its slowest motions.
 
 The means of a stretch follow from one equilibrium to first order in the inputs, for these stay

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Inputs of a tow: warp lengths, speed and heading as instruments show them, and their errors."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Errors of inputs along a tow: hat functions on equal knots, with their covariance.
 
 A log is wrong anew with each reading, and the gear feels its speed in all channels at once. So the

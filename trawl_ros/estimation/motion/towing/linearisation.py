@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Linearised quantities of a tow: values with their derivatives by the parameters, in groups."""
 
 from collections.abc import Mapping

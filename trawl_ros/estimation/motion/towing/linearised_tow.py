@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Record of a tow in motion at a point: predicted means of its stretches, and their derivatives."""
 
 from dataclasses import dataclass

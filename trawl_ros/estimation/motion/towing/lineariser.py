@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Lineariser of tows, a chain of parts: steady ones by equilibria, moving ones integrated in time.
 
 A part in which the inputs have been held for long is predicted by the equilibrium of its inputs. A

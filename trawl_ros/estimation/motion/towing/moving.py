@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Moving part of a tow: the motion of the model along inputs, which may become longer meanwhile."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Records of a tow in motion: means of short stretches, and what the gear was towed with."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Gear that is towed along a tow in motion, and the point at which it is linearised."""
 
 from collections.abc import Sequence

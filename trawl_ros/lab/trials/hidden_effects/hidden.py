@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hidden effect of a trial: physics or an error of an instrument, of a size and a random shape.
 
 Hidden effects are written apart from the catalogue that looks for them. They act through the

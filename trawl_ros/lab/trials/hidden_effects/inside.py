@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hidden effects that the catalogue should name, in richer forms than its own.
 
 Each function takes a random generator and returns an effect of a random shape.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hidden causes on deck, with the names that count as right, fixed before any trial is made.
 
 A cause changes keys of the plant's gear file, one side of its gear, or its instruments.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hidden causes on deck that the catalogue of effects does not have.
 
 They change keys of the gear file. Certain changes of the gear file also count as right names.

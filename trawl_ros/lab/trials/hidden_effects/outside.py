@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hidden effects that the catalogue does not have."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Limits along branches of a gear: folds, and points at which stability is lost."""
 
 from collections.abc import Iterator, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Branch continuation of steady states over a lattice, each reached from all its neighbours.
 
 A state that was found is the start for every neighbour, and also for the place it came from, so

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Checks of a map of steady states: all usable states form one branch."""
 
 from collections.abc import Callable, Iterator, Sequence

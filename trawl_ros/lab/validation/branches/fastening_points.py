@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Fastening points moved forward: boards lean less with speed, until branches fold."""
 
 import numpy as np

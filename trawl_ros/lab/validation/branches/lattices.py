@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Lattices of operating points for branch continuation, and their maps.
 
 A lattice is over warp length and speed, or over warp length and an installation angle.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady states of the default gear over its operating conditions: existence, and no collapse."""
 
 from collections import Counter

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Loads on a board at random attitudes, compared with separately coded equations of the paper."""
 
 from dataclasses import dataclass, replace

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Hanging wire, and wire sagging between two points, against closed forms."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Energy budget of a gear that is towed and hauled: work done against energy stored."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Free rotation of boards without water and weight: conserved energy and angular momentum."""
 
 from dataclasses import dataclass

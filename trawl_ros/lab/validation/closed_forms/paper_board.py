@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Loads on one otter board, coded separately from the paper and the continuation of its law.
 
 It shares no code with `trawl_ros.model.board`. The axes come from the board's three vertices (eq.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Power balance of a gear in motion: sources, sinks, and the energy it holds.
 
 With v the velocities, v · (M a) = v · F at every instant: F is the sum of the model's own

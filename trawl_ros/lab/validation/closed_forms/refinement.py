@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Order of convergence as the segments of a line become shorter."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Free line sinking in still water, compared with the speed at which drag balances its weight."""
 
 from dataclasses import dataclass

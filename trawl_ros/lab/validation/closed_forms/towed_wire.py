@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Towed elastic wire with a lump at its end, compared with integration along the wire."""
 
 from dataclasses import dataclass

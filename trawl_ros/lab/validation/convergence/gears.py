@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady observables of the default gear and of refined ones."""
 
 from dataclasses import dataclass

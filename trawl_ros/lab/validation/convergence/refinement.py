@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Mesh convergence of the default gear: warp, bridles, net, and all of them refined."""
 
 from collections.abc import Iterator, Mapping, Sequence

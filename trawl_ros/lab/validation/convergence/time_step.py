@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Order of convergence of the time stepper, on manoeuvres with hauling."""
 
 from collections.abc import Iterator, Sequence

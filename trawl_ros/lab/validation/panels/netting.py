@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Panels of netting: the model's drag and lift by angle and solidity, compared with tests."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Published panels as records: sources, drag and lift by angle, from ``config/panels``."""
 
 from typing import Annotated, Literal

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Drag of whole nets by speed, as built and in equilibrium, compared with formulas of trawls."""
 
 from collections.abc import Sequence

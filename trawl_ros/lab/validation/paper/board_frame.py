@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Readings of the board's frame, compared by the states that can be towed and by section IV.
 
 The model has one reading (docs/model.md). Another reading differs from it by the signs of some

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Changes of observables by rotated boards, in percent and degrees."""
 
 import math

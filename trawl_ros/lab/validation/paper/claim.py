@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Claim of section IV with the model's checks of it."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Claims of section IV.D on 6-DOF and 3-DOF boards against the synthetic trial, Fig. 13 to 16."""
 
 import numpy as np

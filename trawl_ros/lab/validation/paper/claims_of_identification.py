@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Claims of section IV.B on the fit and its lines, Fig. 4 and 5."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Claims of section IV.C on the gear with turned boards, Fig. 7 to 10."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Claims of section IV.C on α, δ and the depth of turned boards, Fig. 8, 11 and 12."""
 
 import numpy as np

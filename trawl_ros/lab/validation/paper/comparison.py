@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Comparison of 6-DOF boards, boards as points, and the sample trial."""
 
 from collections.abc import Callable, Sequence

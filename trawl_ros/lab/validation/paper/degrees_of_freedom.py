@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Reproduction of Fig. 13 to 16: 6-DOF boards, boards as points, and the synthetic sample trial."""
 
 import numpy as np

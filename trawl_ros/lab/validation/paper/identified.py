@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Reproduction of Fig. 4 and 5: the objective over the iterations, and lift and drag."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Reproduction of Fig. 7 to 12: the gear with its boards turned against their rigging."""
 
 from collections.abc import Callable, Mapping

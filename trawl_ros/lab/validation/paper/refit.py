@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Refit of the twelve coefficients to all states of the sample trial at once, as in Fig. 4."""
 
 from collections.abc import Sequence

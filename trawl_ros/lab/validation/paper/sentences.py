@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """All claims of section IV with the model's checks of them."""
 
 from trawl_ros.lab.report.page import Findings

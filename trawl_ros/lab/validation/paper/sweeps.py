@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady states shared by the reproduced figures of section IV.
 
 The paper prints neither speed nor warp length of Fig. 6 to 12. These are the values at which the

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Synthetic sample trial in the paper's form: one row of means for each steady state."""
 
 from collections import defaultdict

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Reproduction of Fig. 6: the boards' angles against warp length."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Towed wire compared with MoorDyn: steady, and through hauling and a turn."""
 
 from collections.abc import Mapping

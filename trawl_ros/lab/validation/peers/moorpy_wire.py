@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady towed wire compared with MoorPy."""
 
 from trawl_ros.lab.reference_codes.moorpy_wire import MoorPyWire

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Changes of quantities not measured at sea, and their effect on hauls that the model misses."""
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Uncertain numbers behind missed points, each over a range, and the value that a point would need.
 
 The ranges were fixed before any run.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Published hauls at sea compared with the model, point by point."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Published hauls as records: sources, points and tunable values, from ``config/hauls``."""
 
 from typing import Annotated, Literal

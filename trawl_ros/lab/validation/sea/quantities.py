@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Quantities that sources print in addition to observables: drag, area, tension, attack angle."""
 
 import numpy as np

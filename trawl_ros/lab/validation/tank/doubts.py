@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Assumed numbers of the tank's net, each over its range, and the values that readings would need.
 
 The ranges were fixed before any run.

@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Steady states of the tank's net on its floor."""
 
 from dataclasses import dataclass, replace
