@@ -89,7 +89,7 @@ def test_all_nodes_of_a_tow_share_a_process(graph, gear_path, tmp_path):
     graph.settle()
     published = simulation.traffic.counts('published')
     for topic in ('/trawl/truth/winch', '/trawl/truth/door/port/odom', '/trawl/truth/gear'):
-        assert recorder._bag.counts[topic] == published[topic]
+        graph.until(lambda topic=topic: recorder._bag.counts[topic] == published[topic])
     assert recorder._bag.counts['/trawl/winch/joint_states'] > TOWED_S
     for node in nodes:
         assert node.exit_code is None, node.get_name()

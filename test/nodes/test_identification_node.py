@@ -82,7 +82,7 @@ def session(open_graph, steady_bag, gear_path, estimate_listener, tmp_path_facto
         graph.until(lambda: player.exit_code is not None)
         graph.until(lambda: listener.innovations)
         graph.until(lambda: node._worker.idle)
-        graph.until(lambda: listener.status['next manoeuvre'].values, 120.0)
+        graph.until(lambda: listener.status['next manoeuvre'].values)
         graph.settle()
         Session.first_status = listener.status
         Session.before_finish = listener.estimates[-1]

@@ -31,6 +31,9 @@ WINCH = 'winch/joint_states'
 SET_LENGTHS = ('port_length_m', 'starboard_length_m')
 """Parameters by which a node is given set lengths, if it has them."""
 
+NODE_ENDS_S = 10.0
+"""Time (s) for a node to end by itself, after which it is killed."""
+
 START_S = 60.0
 """Wall time within which a node is to listen to the winches."""
 
@@ -150,11 +153,20 @@ def node_controller(command: str, logs: Path) -> Iterator[MakeController]:
             _wait(bench, executor, process, command, logs / 'node.log')
             yield lambda lengths: NodeController(bench, executor, lengths)
         finally:
-            process.terminate()
-            process.wait()
+            _end(process)
             bench.destroy_node()
             executor.shutdown()
             context.try_shutdown()
+
+
+def _end(process: 'subprocess.Popen[bytes]') -> None:
+    """End a node: it may be on its way up, when its handler of signals is not there yet."""
+    process.terminate()
+    try:
+        process.wait(NODE_ENDS_S)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 def _wait(

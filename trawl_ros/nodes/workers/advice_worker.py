@@ -110,7 +110,9 @@ class AdviceWorker(Worker[object]):
             self._more = self._adviser.look_up(self._believed)
         else:
             self._more = self._adviser.look_up(fit.coefficients, manoeuvre_of(fit))
-        self.put(fit)
+        # There is no advice before a fit, and None would end the thread.
+        if fit is not None:
+            self.put(fit)
 
     def _telling(self, activity: str, act: Callable[[], None]) -> bool:
         """Attempt an action; without advice the node still estimates, so an error is only told."""
