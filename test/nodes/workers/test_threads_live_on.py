@@ -85,3 +85,19 @@ def test_a_manoeuvre_that_cannot_be_looked_up_takes_no_advice_away():
     assert kept is advice
     assert said_whole(trouble)
     thread.stop()
+
+
+def test_advice_comes_though_all_manoeuvres_were_looked_up_before_the_first_fit():
+    told, advice, looked_up = SimpleQueue(), object(), Event()
+
+    def look_up(*_):
+        looked_up.set()
+        return False
+
+    adviser = SimpleNamespace(look_up=look_up, advise=lambda fit: advice, trouble='')
+    thread = AdviceWorker(adviser, np.zeros(12), 0.1, lambda: True, lambda *what: told.put(what))
+    thread.start()
+    assert looked_up.wait(PATIENCE_S)
+    thread.fitted(SimpleNamespace(windows=(), coefficients=np.zeros(12)))
+    assert told.get(timeout=PATIENCE_S) == (advice, '')
+    thread.stop()
