@@ -297,7 +297,9 @@ def _replay(
 ) -> None:
     """Replay the instrument topics of the bag to the identification, and let it finish."""
     path = str(scenario.path)
-    topics = list(dict.fromkeys(absolute(channel.topic) for channel in CHANNELS.values()))
+    read = {absolute(channel.topic) for channel in CHANNELS.values()}
+    # Not every ship has every sensor.
+    topics = [entry.topic for entry in summarise(folder.bag).topics if entry.topic in read]
     processes.start(
         'identification_node',
         use_sim_time=True,
