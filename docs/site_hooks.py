@@ -7,6 +7,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
+from trawl_ros.core.limits import TABLE
 from trawl_ros.records.topics import TOPICS, Topic
 
 ROOT = Path(__file__).parents[1]
@@ -24,6 +25,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         text = (ROOT / name).read_text().replace('](docs/', '](')
         files.append(File.generated(config, page, content=text))
     files.append(File.generated(config, 'reference/topics.md', content=topics()))
+    files.append(File.generated(config, 'reference/limits.md', content=limits()))
     return files
 
 
@@ -36,6 +38,12 @@ def topics() -> str:
         '| topic | type | frame | published by | heard by | content |\n|---|---|---|---|---|---|\n'
         f'{rows}'
     )
+
+
+def limits() -> str:
+    """Write the page of the limits of foreign files and messages."""
+    rows = ''.join(f'| `{name}` | {limit} | {limit.what} |\n' for name, limit in TABLE.items())
+    return f'# Limits of input\n\n| limit | at most | of what |\n|---|---|---|\n{rows}'
 
 
 def _row(topic: Topic) -> str:

@@ -3,7 +3,7 @@
 """Limits of foreign files and messages, in one table.
 
 Each is applied before memory or time is spent. The table is complete: readers import their limits
-from it, and a test compares it with `docs/limits.md`.
+from it, and the site lists it.
 """
 
 from dataclasses import dataclass

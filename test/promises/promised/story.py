@@ -45,7 +45,6 @@ NOT_RUN = {
         ),
         'test/packaging builds the wheel and installs it in an environment of its own',
     ),
-    'make check': 'it is a part of what runs all these',
 }
 """Commands that cannot be run by a test, and why."""
 
@@ -62,7 +61,6 @@ ENDS = {
     'trawl diagnose': 10,
     'trawl gear state kaifuha --warp 200 --speed 3.0': 1,
     'trawl trim broken.yaml': 1,
-    'trawl trim mine.yaml --spread 250': 1,
     'bash secured.sh winch_node': 1,
 }
 """Exit codes that documents state, by the beginning of the command; 0 else."""
