@@ -51,7 +51,7 @@ def test_rerigged_boards_are_named_with_their_angle(rerigged):
     assert found.posterior.nodes['boards/rigging'] > 0.5
     value, low, high, _ = values_of(found.best)['board_rigging']['epsilon']
     assert low < np.radians(TURN) < high
-    assert f'= {np.degrees(value):.3g}° (' in headline(found)
+    assert f'epsilon {np.degrees(value):.3g}° (' in headline(found)
     assert 'shackle' in what_to_do(found)
 
 

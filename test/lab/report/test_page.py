@@ -22,7 +22,7 @@ SECTIONS = [
 
 
 def test_a_report_is_written_in_three_forms(tmp_path):
-    page = Page('study', 'A study', 'trawl study', 'It was measured.')
+    page = Page('study', 'A study', 'trawl study', 'It was measured.', answer='It is fast.')
     rows = write_page(tmp_path / 'out', page, SECTIONS, [Drawing('study', 'All.', Figure())])
     names = ['study.html', 'study.json', 'study.md', 'study.png']
     assert sorted(file.name for file in (tmp_path / 'out').iterdir()) == names
@@ -30,7 +30,9 @@ def test_a_report_is_written_in_three_forms(tmp_path):
     assert [row['what'] for row in record['rows']] == [row.what for row in rows]
     lines = (tmp_path / 'out' / 'study.md').read_text().splitlines()
     for line in (
-        'Made by `trawl study` of trawl_ros',
+        '**It is fast. 1 of 2 targets are reached.**',
+        '<summary>0 of 1 targets are reached.</summary>',
+        'It was measured. Made by `trawl study` of trawl_ros',
         '| Speed | steps | 5 1/s | ≥ 9 1/s | a <slow> \\| machine |',
         '| what | value | asked for | reached | note |',
         '| steps | 5 1/s | ≥ 9 1/s | **no** | a <slow> \\| machine |',
@@ -40,6 +42,8 @@ def test_a_report_is_written_in_three_forms(tmp_path):
     ):  # fmt: skip
         assert any(found.startswith(line) for found in lines), line
     assert not any('Nothing' in line for line in lines)
+    # The picture of the first section that has one stands above all sections.
+    assert lines.index('![The warp.](figures/warp.png)') < lines.index('## Speed')
     # A table, a heading or a picture needs an empty line before it.
     for before, line in pairwise(lines):
         if line.startswith(('#', '![', '| what', '| where', '| a ')):

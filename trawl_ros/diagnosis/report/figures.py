@@ -13,8 +13,9 @@ from trawl_ros.diagnosis.locating import map_of
 from trawl_ros.report.pictures import Drawing
 from trawl_ros.report.style import FAINT, MEASURED, SECOND, quiet
 
-WHERE, WHICH, GAP = 'Where they disagree', 'Which cause it is', 'The gap before and after'
-BEGAN = 'What began on the way'
+LEAD = 'Which cause it is'
+WHERE, GAP = 'Where they disagree', 'The gap before and after'
+BEGAN = 'What began during the tow'
 
 MOST_Z = 8.0
 """Colours end here."""
@@ -32,14 +33,14 @@ def drawings(diagnosis: Diagnosis) -> list[Drawing]:
                 'probabilities',
                 'Probability that each cause is there (dark), and any cause of its place in the '
                 'tree of causes, which one check on deck finds (light).',
-                probability_figure(diagnosis.posterior), WHICH,
+                probability_figure(diagnosis.posterior), LEAD,
             )
         )  # fmt: skip
     if diagnosis.screen is not None:
         made.append(
             Drawing(
                 'where',
-                'Residuals of each channel with each variable, in standard deviations of what '
+                'Residuals of each sensor with each variable, in standard deviations of what '
                 'errors would make, boards and calibration taken out. Red: grows with it.',
                 where_figure(diagnosis.screen), WHERE,
             )
@@ -48,7 +49,7 @@ def drawings(diagnosis: Diagnosis) -> list[Drawing]:
         made.append(
             Drawing(
                 'gap',
-                'Errors of each channel on what was kept back, over what errors of instruments '
+                'Errors of each sensor on held-out tows, over what errors of instruments '
                 'alone would make (1): boards refitted alone, with '
                 'the likeliest cause, and with the best other one.',
                 gap_figure(holdout, 'the likeliest cause'), GAP,
@@ -59,8 +60,8 @@ def drawings(diagnosis: Diagnosis) -> list[Drawing]:
             Drawing(
                 'coefficients',
                 'The coefficients of the boards with and without '
-                'the likeliest cause, in standard deviations of the prior: what moves had been '
-                'bent to hide it.',
+                'the likeliest cause, in standard deviations of the prior: those that move had '
+                'hidden it.',
                 coefficient_shifts_figure(diagnosis), GAP,
             )
         )  # fmt: skip
@@ -77,7 +78,7 @@ def _began(diagnosis: Diagnosis) -> list[Drawing]:
         Drawing(
             f'onset_{number}',
             f'{tow.tow} as it was watched. Above: what each channel shows more than the '
-            'model foretold, in standard deviations. Below: the evidence for the rarest '
+            'model predicted, in standard deviations. Below: the evidence for the rarest '
             'candidate; beyond the dashed limit a finding is raised.',
             onset_figure(tow.course, tow.findings, tow.limit, tow.start_ns), BEGAN,
         )

@@ -12,7 +12,7 @@ from trawl_ros.diagnosis.inference.posterior import Explanation
 from trawl_ros.diagnosis.report.common_units import in_common_unit
 
 BETTER = 0.3
-"""A sum or difference is told whose std is below this part of either value's."""
+"""A sum or difference is given if its std is below this part of either value's."""
 
 WIDTH = 1.96
 """Half a 95 % interval, in std."""
@@ -37,12 +37,10 @@ def known_together(best: Explanation) -> Iterator[str]:
             if std > BETTER * min(estimate.std[i], estimate.std[j]):
                 continue
             low, high = value - WIDTH * std, value + WIDTH * std
-            unit = f' {first.unit}' if first.unit else ''
-            common = in_common_unit(value, low, high, first.unit)
+            size = in_common_unit(value, low, high, first.unit)
             yield (
                 f'Of {suspect.entry.name.replace("_", " ")} {first.name.replace("_", " ")} {word} '
-                f'{second.name.replace("_", " ")} is known, {value:.3g}{unit} ({low:.3g} to '
-                f'{high:.3g}){common}, better than each alone.'
+                f'{second.name.replace("_", " ")} is known, {size}, better than each alone.'
             )
 
 

@@ -117,12 +117,13 @@ def _sizes(diagnosis: Diagnosis) -> str:
         effect, name = suspect.entry.effect, suspect.entry.name.replace('_', ' ')
         if isinstance(effect, GearFileChange):
             value, low, high, unit = values['change']
-            phrases.append(f'{effect.words(value)} ({low:.3g} to {high:.3g}{unit and " " + unit})')
+            factor, symbol = (100.0, '%') if effect.record.relative else (1.0, unit)
+            ends = f'{factor * low:.3g} to {factor * high:.3g} {symbol}'
+            phrases.append(f'{effect.words(value)} ({ends})')
             continue
         neutral = {parameter.name: parameter.neutral for parameter in effect.parameters}
         listed = ', '.join(
-            f'{parameter.replace("_", " ")} {value:.3g}{" " + unit if unit else ""} '
-            f'({low:.3g} to {high:.3g})'
+            f'{parameter.replace("_", " ")} '
             + in_common_unit(value, low, high, unit, parameter, neutral[parameter])
             for parameter, (value, low, high, unit) in values.items()
         )

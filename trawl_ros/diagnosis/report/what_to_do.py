@@ -20,19 +20,19 @@ def what_to_do(diagnosis: Diagnosis) -> str:
 def _sentences(diagnosis: Diagnosis) -> list[str]:
     match diagnosis.verdict:
         case 'NO_DISCREPANCY':
-            return ['Nothing need be done; the last table of the report says what would not show.']
+            return ['Nothing need be done. The statistics of the report say what would not show.']
         case 'NOT_TESTABLE':
-            return ['Mend what the reason says, and diagnose again.']
+            return ['Correct what the reason says, and diagnose again.']
     stuck = [_frozen(FROZEN)] if diagnosis.frozen else []
     if stuck and diagnosis.verdict == 'NAMED' and diagnosis.best is None:
-        return [*stuck, 'Until it is mended its readings say nothing of the gear.']
+        return [*stuck, 'Until it is repaired its readings say nothing of the gear.']
     cards = [*stuck, *(_card(entry) for entry in _likely(diagnosis))]
     looked_at = [f'{number}. {card}' for number, card in enumerate(cards, 1)]
     if diagnosis.verdict == 'NAMED':
         first = 'Look first at what is named.'
         last = (
-            'If it is found and mended, tow the same states again beside the same baseline; else '
-            'go on with the repaired gear file, with which the same bags should show nothing more.'
+            'If you find and repair it, tow the same states again with the same baseline. If not, '
+            'use the repaired gear file: with it the same bags should show nothing more.'
         )
     elif diagnosis.verdict == 'AMBIGUOUS':
         first = 'Look at these, the likeliest first.'

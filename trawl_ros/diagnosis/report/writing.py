@@ -2,16 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of a diagnosis."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from trawl_ros.core.files import made_folder, write_json, write_text
 from trawl_ros.diagnosis.diagnosis import Diagnosis
+from trawl_ros.diagnosis.holdout import HoldoutComparison
 from trawl_ros.diagnosis.repair import SourceBag, gear_text, repaired
-from trawl_ros.diagnosis.report.figures import drawings
+from trawl_ros.diagnosis.report.figures import BEGAN, LEAD, drawings
 from trawl_ros.diagnosis.report.result import result
 from trawl_ros.diagnosis.report.sentences import headline, sentences
 from trawl_ros.diagnosis.report.what_to_do import what_to_do
+from trawl_ros.estimation.report.sensors import FIELD_UNITS
+from trawl_ros.records.channels import CHANNELS
 from trawl_ros.report.pictures import by_section, draw, embedded
 from trawl_ros.report.rendering import page
 
@@ -41,7 +44,8 @@ def write_diagnosis(diagnosis: Diagnosis, sources: Sequence[SourceBag], folder: 
     write_json(folder / 'diagnosis.json', numbers, indent=2)
     if gear is not None:
         write_text(folder / MODEL, gear_text(gear))
-    pictures = embedded(folder, draw(folder, drawings(diagnosis)))
+    sections = by_section(embedded(folder, draw(folder, drawings(diagnosis))))
+    lead, began = sections.pop(LEAD, []), sections.pop(BEGAN, [])
     for name in ('report.html', 'report.md'):
         text = page(
             'trawl_ros.diagnosis.report',
@@ -50,7 +54,24 @@ def write_diagnosis(diagnosis: Diagnosis, sources: Sequence[SourceBag], folder: 
             headline=headline(diagnosis),
             sentences=sentences(diagnosis),
             what_to_do=what_to_do(diagnosis),
-            sections=by_section(pictures),
+            errors=[] if diagnosis.holdout is None else list(_error_rows(diagnosis.holdout)),
+            pictures=lead,
+            began=began,
+            sections=sections,
             repaired=gear is not None,
         )
         write_text(folder / name, text)
+
+
+def _error_rows(holdout: HoldoutComparison) -> Iterator[tuple[str, ...]]:
+    """Yield name, and errors on held-out tows in the unit of the field, of each sensor."""
+    for name, before in holdout.before.rms.items():
+        unit, factor = FIELD_UNITS[CHANNELS[name].unit]
+        errors = (
+            holdout.before.expected[name],
+            before,
+            holdout.after and holdout.after.rms.get(name),
+            holdout.placebo and holdout.placebo.rms.get(name),
+        )
+        cells = ('–' if one is None else f'{factor * one:.2f} {unit}' for one in errors)
+        yield name.replace('_', ' '), *cells

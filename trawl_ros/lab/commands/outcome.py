@@ -12,6 +12,7 @@ from rich.console import Console
 from trawl_ros.cli.console.interruption import INTERRUPTED
 from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.lab.report.measured import MeasuredValue
+from trawl_ros.lab.report.page import reached_in_words
 
 
 @contextmanager
@@ -35,8 +36,7 @@ def print_missed(rows: Iterable[MeasuredValue], console: Console) -> None:
 
 def print_reached(rows: Sequence[MeasuredValue], report: Path) -> None:
     """Print how many targets are reached, and where the report is."""
-    asked = [row for row in rows if row.target is not None]
-    click.echo(f'{sum(row.ok for row in asked)} of {len(asked)} targets are reached: {report}')
+    click.echo(f'{reached_in_words(rows)} {report}'.strip())
 
 
 def print_outcome(rows: Sequence[MeasuredValue], report: Path) -> None:

@@ -4,7 +4,7 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from trawl_ros.core.files import made_folder, write_json, write_text
@@ -45,7 +45,7 @@ class Section:
     rows, pictures, tables, text
         Content of the section; ``text`` is a paragraph.
     group
-        Heading that it shares with those beside it; '' for none.
+        Heading that it shares with its neighbours; '' for none.
     name, command, seconds
         Of what was run for it: its name, the command for it alone, and s of wall clock.
     """
@@ -65,19 +65,28 @@ class Section:
         """Rows whose target is not reached."""
         return [row for row in self.rows if not row.ok]
 
+    @property
+    def outcome(self) -> str:
+        """How many of its targets are reached, in words."""
+        return reached_in_words(self.rows) or f'{len(self.rows)} values'
+
 
 @dataclass(frozen=True)
 class Page:
-    """Texts of a report beside its sections.
+    """Texts of a report, apart from its sections.
 
     Attributes
     ----------
     name
-        Of the files, without their endings.
+        Name of the files, without their endings.
     title, command, method
-        Subject, command that makes the report anew, and method of the values.
+        Subject, command that makes the report again, and method of the values.
     data
-        Of the JSON file, without its ending; by default as the others.
+        Name of the JSON file, without its ending; by default as the others.
+    answer
+        First sentence of the report; after it stands how many targets are reached.
+    lead
+        Name of the section whose first picture is shown at the top; '' for the first that has one.
     """
 
     name: str
@@ -85,6 +94,8 @@ class Page:
     command: str
     method: str
     data: str = ''
+    answer: str = ''
+    lead: str = ''
 
 
 def write_page(
@@ -119,22 +130,42 @@ def write_page(
     made_folder(folder)
     write_json(folder / f'{page.data or page.name}.json', content, indent=1, ensure_ascii=False)
     pictures = draw(folder, drawings)
-    asked = [row for row in rows if row.target is not None]
+    verdict = ' '.join(filter(None, (page.answer, reached_in_words(rows))))
+    filled_in = [section for section in sections if section.rows or section.tables]
+    lead, filled_in = _led(filled_in, page.lead)
     for kind, shown in (('md', pictures), ('html', embedded(folder, pictures))):
         text = filled(
             'trawl_ros.lab.report',
             f'report.{kind}',
             page=page,
             version=__version__,
-            sections=[section for section in sections if section.rows or section.tables],
-            asked=asked,
-            reached=[row for row in asked if row.ok],
+            sections=filled_in,
+            verdict=verdict,
+            lead=lead or shown[:1],
             missed=_missed_table(sections),
             values_table=values_table,
-            pictures=shown,
+            pictures=shown if lead else shown[1:],
         )
         write_text(folder / f'{page.name}.{kind}', text)
     return rows
+
+
+def reached_in_words(rows: Sequence[MeasuredValue]) -> str:
+    """Return how many targets are reached, as a sentence; '' where there are none."""
+    asked = [row for row in rows if row.target is not None]
+    return f'{sum(row.ok for row in asked)} of {len(asked)} targets are reached.' if asked else ''
+
+
+def _led(sections: Sequence[Section], name: str) -> tuple[tuple[Picture, ...], list[Section]]:
+    """Take the picture for the top of the page out of the section of that name, or the first."""
+    with_pictures = [section for section in sections if section.pictures]
+    named = [section for section in with_pictures if section.name == name]
+    for leading in (named or with_pictures)[:1]:
+        return tuple(leading.pictures[:1]), [
+            replace(section, pictures=section.pictures[1:]) if section is leading else section
+            for section in sections
+        ]
+    return (), list(sections)
 
 
 def values_table(rows: Sequence[MeasuredValue]) -> TextTable:

@@ -25,6 +25,9 @@ LONG = ('steady_states', 'sentences', 'board_frame', 'hauls', 'flume')
 
 COMMAND = 'trawl validate'
 
+LEAD = 'hauls'
+"""Case whose error and figure stand at the top of the report."""
+
 
 def validate(
     out: str | Path,
@@ -92,12 +95,25 @@ def validate(
         command=COMMAND,
         method='Small version of each case.'
         if quick
-        else 'Each case says what it is held against.',
+        else 'Each case says what it is compared with.',
         data='validation',
+        answer=_answer(finished),
+        lead=LEAD,
     )
     record = {f'{case.name}.{row.key}': check_record(row) for case in finished for row in case.rows}
     write_page(folder, page, finished, record=record)
     return tuple(finished)
+
+
+def _answer(finished: Sequence[Section]) -> str:
+    """Return how far the model is from hauls at sea, where these are among the cases."""
+    errors = [
+        row.figure
+        for case in finished
+        for row in case.rows
+        if (case.name, row.key) == (LEAD, 'median_error')
+    ]
+    return f'The median error over published hauls at sea is {errors[0]}.' if errors else ''
 
 
 def run_cases(
