@@ -69,7 +69,7 @@ def repair_bag(
     path
         The bag's folder, or one MCAP file. It is left as it is.
     out
-        Folder to be made; by default beside the bag, with `SUFFIX` behind its name.
+        Folder to be made; by default next to the bag, with `SUFFIX` behind its name.
     on_progress
         Called after each message, with the recorded time (s) of its file that is done.
 

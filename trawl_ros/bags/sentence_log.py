@@ -68,7 +68,7 @@ def write_sentence_log(
     Raises
     ------
     BagError
-        If there is no bag, no reading that a system tells, or the file exists or cannot be
+        If there is no bag, no reading that a system reports, or the file exists or cannot be
         written.
     """
     file = new_folder(Path(out), BagError)
@@ -94,7 +94,7 @@ def write_sentence_log(
         if not counts:
             systems = ' and '.join(table.system for table in tables)
             raise BagError(
-                f'{path}: no reading that {systems} tells; expected one of '
+                f'{path}: no reading that {systems} reports; expected one of '
                 f'{", ".join(writer.topics)}'
             )
     silent = tuple(topic for topic in writer.topics if topic not in spoken)

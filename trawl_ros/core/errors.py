@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of the input, each with one sentence that tells the user what to do.
+"""Errors of the input, each with one sentence that says what to do.
 
 Every message names the file, key or topic, what was found and what was expected.
 """

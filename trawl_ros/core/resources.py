@@ -49,7 +49,7 @@ def share_path(*parts: str) -> Path:
 def packaged(path: str | Path, folder: str, error: type[TrawlError] = TrawlError) -> Path:
     """Find a YAML file by path, or by its name in ``config/<folder>``, with or without ``.yaml``.
 
-    The scenario of the sample bag lies beside it, in ``bags``.
+    The scenario of the sample bag lies next to it, in ``bags``.
 
     Raises
     ------

@@ -69,7 +69,7 @@ class Diagnosis:
     frozen
         Sensors that show one value throughout a tow, whose readings were left out.
     checks, proposals
-        Next steps where something cannot be told apart: without towing, in sentences, and
+        Next steps where causes cannot be separated: without towing, in sentences, and
         tows.
     onsets
         Onsets in the tows; empty where that was not asked for.

@@ -230,7 +230,7 @@ class BoardRecord(Record):
         for name, low, high in zip(COEFFICIENTS, CORRECTIONS.low, CORRECTIONS.high, strict=True):
             if not low <= (value := getattr(self.coefficients, name)) <= high:
                 raise ValueError(
-                    f'coefficients.{name}: found {value:g} beside a law, to which the coefficients '
+                    f'coefficients.{name}: found {value:g} with a law, to which the coefficients '
                     f'are corrections, expected {low:g} to {high:g}. Delete `coefficients` if they '
                     'describe another board, or delete `law`'
                 )

@@ -327,7 +327,7 @@ def _corrections(gear: GearRecord) -> Iterator[GearFinding]:
         if np.any(np.abs(values) > 2.0 * usual):
             yield GearFinding(
                 key,
-                'found numbers as of a board without a law, expected corrections near zero beside '
+                'found numbers as of a board without a law, expected corrections near zero with '
                 f'board.law; delete {key.removesuffix(".start")} if they '
                 'describe another board',
             )

@@ -239,7 +239,7 @@ class NetPlanRecord(Record):
             ropes = {piece.orientation == 'ropes' for piece in pieces}
             if len(ropes) > 1 or (behind_netting and True in ropes):
                 raise ValueError(
-                    f"pieces: section '{name}' has ropes beside or behind netting, expected ropes "
+                    f"pieces: section '{name}' has ropes next to or behind netting, expected ropes "
                     'in all of its panels and in all sections ahead of it'
                 )
             behind_netting |= False in ropes

@@ -79,7 +79,7 @@ def _with_observing(node: str) -> Callable[[type[RecordT]], type[RecordT]]:
     }
 
     def with_keys(cls: type[RecordT]) -> type[RecordT]:
-        # Pydantic's options are keywords beside those of the fields, which mypy cannot tell apart.
+        # Pydantic's options are keywords like those of the fields, which mypy cannot tell apart.
         model: type[RecordT] = create_model(  # type: ignore[call-overload]  # as said above
             cls.__name__, __base__=cls, __doc__=cls.__doc__, __module__=cls.__module__, **keys
         )

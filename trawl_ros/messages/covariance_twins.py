@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Readings with their covariance, beside those without: input of estimators of poses.
+"""Readings with their covariance, next to those without: input of estimators of poses.
 
 robot_localization takes them as they are. What a sensor does not measure has `UNKNOWN_VARIANCE`.
 """

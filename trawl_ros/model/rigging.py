@@ -18,7 +18,7 @@ from trawl_ros.model.net.weave import NetMesh
 from trawl_ros.model.water import Water
 
 HUNG_PIECES = 200
-"""Number of pieces of a body spread along a rope, each of which goes to the nodes beside it."""
+"""Number of pieces of a body spread along a rope, each of which goes to the nearest nodes."""
 
 
 class GearBuilder:

@@ -43,7 +43,7 @@ SENSORS = (
 )
 OFF = 'off'
 BACK_NS = SECOND
-"""A topic whose stamps go back by more than this tells of a tow that has begun anew."""
+"""Stamps that go back by more than this are those of a tow that has begun again."""
 
 SELDOM_NS = 2 * SECOND
 """Without a compass, the other sensors keep time."""

@@ -25,7 +25,7 @@ from trawl_ros.records.towing_limits import LIMITS
 WINCH = 'winch/joint_states'
 OFF = 'off'
 BACK_NS = SECOND
-"""Stamps that go back by more than this are those of a tow that has begun anew."""
+"""Stamps that go back by more than this are those of a tow that has begun again."""
 
 SILENT_S = 5.0
 DEFAULT = AutotrawlSettings()

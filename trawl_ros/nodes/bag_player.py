@@ -34,7 +34,7 @@ CLOCK_STEP = SECOND // 100
 class BagPlayer(TrawlNode):
     """Node that plays a bag at a rate, or as fast as its consumers follow.
 
-    Publishers offer the QoS that was recorded. It begins when discovery has come to rest and all
+    Publishers offer the QoS that was recorded. It begins when discovery has finished and all
     of ``wait_for`` report on ``sync/progress``, and ends when subscribers have everything.
     ``~/pause``, ``~/resume``, ``~/toggle_paused`` and ``~/play_next`` (one message, while paused)
     are services.

@@ -163,8 +163,8 @@ class DiscrepancyNode(TrawlNode):
     def _feeder(self, topic: str) -> Callable[[Any], None]:
         def feed(message: Any) -> None:
             sample = to_sample(topic, message)
-            anew, samples = self._rewinding.take(sample)
-            if anew:
+            rewound, samples = self._rewinding.take(sample)
+            if rewound:
                 self._forget()
             for one in samples:
                 if one is sample:
@@ -182,7 +182,7 @@ class DiscrepancyNode(TrawlNode):
         self._progress.done(self._dealt.take(sample.stamp))
 
     def _tell_finding(self, finding: Finding) -> None:
-        """Publish a finding of what has begun, and keep in the log book who was told."""
+        """Publish a finding of what has begun, and list the subscribed nodes in the log book."""
         before = self._told.get(finding.number)
         self._told[finding.number] = finding
         if before is None or before.state != finding.state:
@@ -201,11 +201,12 @@ class DiscrepancyNode(TrawlNode):
         # Two workers and the operator come here; of two messages the newer one must go out last.
         with self._telling:
             acknowledged = self._acknowledged
-            told = [onset_status(one, one.number in acknowledged) for one in self._newest_told()]
+            newest = self._newest_findings()
+            statuses = [onset_status(one, one.number in acknowledged) for one in newest]
             stamp = self._reached.stamp or self.now()
-            self.send(FINDINGS, diagnostic_array(stamp, [*self._verdict, *told]))
+            self.send(FINDINGS, diagnostic_array(stamp, [*self._verdict, *statuses]))
 
-    def _newest_told(self) -> list[Finding]:
+    def _newest_findings(self) -> list[Finding]:
         """Newest findings of what has begun."""
         return [self._told[number] for number in sorted(self._told)[-MOST_TOLD:]]
 
@@ -222,10 +223,10 @@ class DiscrepancyNode(TrawlNode):
             self._book_trouble = ''
 
     def _newest_finding(self) -> Finding:
-        told = self._newest_told()
-        if not told:
+        findings = self._newest_findings()
+        if not findings:
             raise TrawlError('nothing has been found to begin')
-        return told[-1]
+        return findings[-1]
 
     def _acknowledge(self) -> str:
         finding = self._newest_finding()
@@ -255,7 +256,7 @@ class DiscrepancyNode(TrawlNode):
             self._onset.reset()
         self._windows, self._reached, self._outcome = [], Reached(), DiagnosisOutcome()
         self._dealt = Reached()
-        self.get_logger().warning('stamps of the winch went back; all begins anew')
+        self.get_logger().warning('stamps of the winch went back; everything begins again')
 
     def _take(self, decided: Sequence[SteadyWindow | RejectedWindow]) -> None:
         steady = [window for window in decided if isinstance(window, SteadyWindow)]

@@ -254,7 +254,7 @@ class IdentificationNode(TrawlNode):
         self._resets += 1
         self._instruments.forget()
         self._worker.reset()
-        self.get_logger().warning('stamps of the winch went back; the estimate begins anew')
+        self.get_logger().warning('stamps of the winch went back; the estimate begins again')
 
     def _save(self, identification: Identification) -> None:
         if self._state is not None:

@@ -60,7 +60,7 @@ class NmeaIn(TrawlNode):
     """Node that listens to several links at once and publishes the instrument topics.
 
     With ``commands`` it hears set points too, held to limits; once these fall silent the winches
-    are told to hold what the counters show.
+    are commanded to hold what the counters show.
     """
 
     SPECS: ClassVar = (
@@ -226,7 +226,7 @@ class NmeaIn(TrawlNode):
         spoken, rival = self._tellers.believed(spoken, source, time.monotonic_ns())
         if rival and not spoken.readings:
             raise Unreadable(
-                f'a reading of {row.topics[0]} by {via}, which another source tells: {rival}'
+                f'a reading of {row.topics[0]} by {via}, which another source gives: {rival}'
             )
         if any(topic in COMMANDS for topic in row.topics):
             self._command(spoken, frame.tag_time)

@@ -109,7 +109,7 @@ class NmeaOut(TrawlNode):
 
     def _time(self, stamp: int) -> list[str]:
         due = self._next_clock
-        # A stamp far back is that of a tow that has begun anew.
+        # A stamp far back is that of a tow that has begun again.
         since = None if due is None else stamp - due + self._interval
         if since == 0 or (since is not None and -self._interval < since < self._interval):
             return []

@@ -219,7 +219,7 @@ class SimNode(TrawlNode):
             return OK, 'paused'
         if self._pacer.lost_s > 0.0:
             return WARN, 'slower than the time scale asks for; expected a smaller one'
-        return OK, 'towing' if self._started else 'waits until discovery has come to rest'
+        return OK, 'towing' if self._started else 'waits until discovery has finished'
 
     def _tick_s(self) -> float:
         scale = self.parameters['time_scale']
@@ -355,7 +355,7 @@ class SimNode(TrawlNode):
             return speeds
         if role == 'refused':
             raise MessageError(
-                f'{WINCH_COMMAND}: velocity {list(message.velocity)} beside a position; expected '
+                f'{WINCH_COMMAND}: velocity {list(message.velocity)} next to a position; expected '
                 "none, or the parameter winch_velocity to be 'honoured'"
             )
         self.say(
@@ -371,7 +371,7 @@ class SimNode(TrawlNode):
         tow = self._tow
         if not isinstance(tow, CommandedTow):
             raise MessageError(
-                f'{topic}: the scenario is in command; expected no command beside it'
+                f'{topic}: the scenario is in command; expected no command on this topic'
             )
         self._watch(topic, message)
         return tow

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Entry points of the nodes: told to end while it is still imported, a node ends without a word.
+"""Entry points of the nodes: a node that is to end while it is still imported ends silently.
 
 Imports take seconds, and Python would answer SIGINT with a traceback out of the middle of one.
 """

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Tow that obeys commands as they come, beside `Trial`, which follows a scenario's."""
+"""Tow that obeys commands as they come; `Trial` follows those of a scenario."""
 
 import math
 from collections.abc import Callable

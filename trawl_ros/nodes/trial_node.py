@@ -155,8 +155,8 @@ class TrialNode(TrawlNode):
         echo = not isinstance(sample, RangeSample) or math.isfinite(sample.distance)
         if echo and (reason := impossible(sample)):
             raise MessageError(f'{topic}: {reason}')
-        anew, samples = self._rewinding.take(sample)
-        if anew:
+        rewound, samples = self._rewinding.take(sample)
+        if rewound:
             self._reached = Reached()
         self._heard_at = time.monotonic()
         for one in samples:

@@ -46,7 +46,7 @@ class DrawnTow:
     page
         The HTML page with all of them.
     pictures
-        Each with its file beside the page, and its caption.
+        Each with its file next to the page, and its caption.
     notes
         Sentences on what could not be drawn.
     complete

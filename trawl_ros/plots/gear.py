@@ -40,7 +40,7 @@ SIZES = '#333333'
 """Colour of the sizes that are written on the gear."""
 
 LEFT_IN, RIGHT_IN, TITLE_IN, FOOT_IN, GAP_IN = 0.8, 0.25, 0.55, 0.65, 0.4
-"""Room (inches) beside, above, below and between the views."""
+"""Room (inches) around and between the views."""
 
 LEAST_HEIGHT = 0.13
 """Smallest height of the views from above and from the side, as a share of their width."""

@@ -33,7 +33,7 @@ class DotOptions:
     most : int
         Number of dots of a curve; of more readings every so-manieth is drawn.
     neighbours : int
-        Number of readings whose median tells whether one of them is an outlier.
+        Number of readings whose median decides whether one of them is an outlier.
     far_std : float
         Distance from that median, in robust standard deviations, beyond which a reading is an
         outlier (Hampel's filter) and does not widen the axis.

@@ -104,7 +104,7 @@ def _trapeze(front: float, back: float, x: float, behind: float) -> list[tuple[f
 
 def _label(axes: Axes, piece: PieceRecord, corners: list[tuple[float, float]], wide: float) -> None:
     across, behind = np.mean(corners, axis=0)
-    # Words that are wider than their piece stand beside it.
+    # Words that are wider than their piece stand next to it.
     right = max(corner[0] for corner in corners)
     fits = piece.part == 'wing' or right > LABEL_WIDTH_SHARE * wide
     knots = ', knotless' if piece.knots == 'knotless' else ''

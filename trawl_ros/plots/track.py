@@ -18,7 +18,7 @@ AVERAGED_S = 60.0
 """Time over which the current is averaged, since it is a difference of two noisy speeds."""
 
 LEAST_CURRENT = 0.03
-"""Smallest current, m/s, that can be told from the noise of log and GPS."""
+"""Smallest current, m/s, that stands out from the noise of log and GPS."""
 
 
 def track_figure(tow: TowHistory) -> Figure | None:

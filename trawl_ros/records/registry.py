@@ -63,7 +63,7 @@ class Topic:
     sentence
         Content.
     published_by, heard_by
-        Names of the nodes that may, beside those that play, record or show everything.
+        Names of the nodes that may, apart from those that play, record or show everything.
     latched
         True if a late subscriber gets the last message.
     silence
@@ -234,7 +234,7 @@ class Sensor(Topic, Generic[SampleT_co]):
     beam_width
         Beam width of a range sensor, for display, rad.
     errors
-        Key of its errors in a file of instruments, beside those of the node, for a sensor that
+        Key of its errors in a file of instruments, next to those of the node, for a sensor that
         does nothing but measure the observables of its channels; '' for one with code of its own.
     """
 

@@ -107,7 +107,7 @@ class SourceArbiter:
         self._told: dict[str, tuple[Source, int]] = {}
 
     def believed(self, spoken: Spoken, source: Source, now: int) -> tuple[Spoken, Source | None]:
-        """Select the readings of a sentence whose topics its source tells.
+        """Select the readings of a sentence whose topics its source may give.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class SourceArbiter:
         Spoken
             The sentence with these readings.
         Source or None
-            Another instrument that tells a topic instead; None without one.
+            Another instrument that gives a topic instead; None without one.
         """
         rival = None
         topics = []

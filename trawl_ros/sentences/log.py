@@ -316,7 +316,7 @@ class SentenceLogReader:
         label = self._label(here[0].spoken)
         for one, rank in zip(sentences, ranks, strict=True):
             if rank != best:
-                self.left[f'{self._label(one.spoken)} for {topic}, which {label} tells'] += 1
+                self.left[f'{self._label(one.spoken)} for {topic}, which {label} reports'] += 1
         if here[0].spoken.system != SHIP:
             return here
         talkers = Counter(one.spoken.talker for one in here)
@@ -324,7 +324,7 @@ class SentenceLogReader:
         for talker, count in talkers.items():
             if talker not in wanted:
                 believed = ' and '.join(sorted(wanted))
-                self.left[f'{label} of {talker} for {topic}, which {believed} tells'] += count
+                self.left[f'{label} of {talker} for {topic}, which {believed} reports'] += count
         return [one for one in here if one.spoken.talker in wanted]
 
     def _rank(self, topic: str, spoken: Spoken) -> tuple[int, int] | None:

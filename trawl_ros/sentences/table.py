@@ -223,7 +223,7 @@ class SentenceTable(Record):
             self.topics.get(topic, StatedTopic()).check(topic)
         for topic, stated in self.topics.items():
             if topic not in told:
-                raise ValueError(f'topics.{topic}: no sentence tells it, expected one that does')
+                raise ValueError(f'topics.{topic}: no sentence gives it, expected one that does')
             stated.check(topic)
         return self
 

@@ -43,7 +43,7 @@ def write_picture(
         If this machine cannot draw it, or this Rerun cannot be asked what it shows.
     """
     if not hasattr(ViewerClient, 'get_state'):
-        raise ViewerFailed('a picture needs Rerun 0.41, whose viewer tells what it has drawn')
+        raise ViewerFailed('a picture needs Rerun 0.41, whose viewer reports what it has drawn')
     with Viewer('headless') as viewer:
         with to_viewer(viewer.url) as recording:
             log = RerunLog(recording, tow.topics)

@@ -86,7 +86,7 @@ class TowReader:
     apart_s
         Between two shapes of the gear.
     model
-        True to have beside the readings what the gear's model says in steady windows.
+        True to show also what the gear's model predicts in steady windows.
     """
 
     def __init__(self, gear: GearRecord, apart_s: float = 1.0, *, model: bool = False) -> None:
@@ -257,7 +257,7 @@ class TowReader:
 
     def _is_due(self, topic: str, stamp: int) -> bool:
         due = self._due.get(topic)
-        # A stamp far back is that of a tow that has begun anew.
+        # A stamp far back is that of a tow that has begun again.
         if due is not None and due - round(SLOW_S * SECOND) <= stamp < due:
             return False
         self._due[topic] = stamp + round(SLOW_S * SECOND)

@@ -1,4 +1,4 @@
-"""A finding has the likeliest name, and those that it is not told from."""
+"""A finding has the likeliest name, and those with similar evidence."""
 
 import numpy as np
 

@@ -28,7 +28,7 @@ def test_the_channels_that_changed_are_named_and_the_finding_is_marked_at_its_mi
     above, below = figure.axes
     marked = [line.get_xdata()[0] for line in above.lines if len(set(line.get_xdata())) == 1]
     assert sorted(marked) == pytest.approx([10.0, 12.0])
-    assert any('told 2.0 min' in text.get_text() for text in below.texts)
+    assert any('found 2.0 min' in text.get_text() for text in below.texts)
 
 
 def test_a_tow_without_a_finding_has_its_figure_too():

@@ -1,4 +1,4 @@
-"""How fast stamps go against wall time; a jump backward begins anew and is no speed."""
+"""How fast stamps go against wall time; a jump backward begins again and is no speed."""
 
 from trawl_ros.core.time import SECOND
 from trawl_ros.nodes.runtime.traffic import RealTimeFactor

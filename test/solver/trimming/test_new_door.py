@@ -84,7 +84,7 @@ def test_a_law_beside_whole_coefficients_is_refused(tmp_path: Path) -> None:
     both.write_text(
         text.replace('board:\n', 'board:\n  law: {kind: table, door: oval_polyvalent}\n')
     )
-    with pytest.raises(GearError, match=r'coefficients\.a2: found 2\.47 beside a law'):
+    with pytest.raises(GearError, match=r'coefficients\.a2: found 2\.47 with a law'):
         load_gear(both)
     both.write_text(both.read_text().replace('a2: 2.47', 'a2: 1.9'))
     keys = {finding.key for finding in findings(load_gear(both))}

@@ -123,7 +123,7 @@ class LogMapping(Record):
             if column.hemisphere and field not in ('latitude', 'longitude'):
                 yield f'{where}.fields.{field}.hemisphere: given, expected none: it is no position'
         if topic == 'vessel/velocity_water' and 'forward' not in fields:
-            yield f'{where}.fields: to_port alone, expected forward beside it'
+            yield f'{where}.fields: found to_port alone, expected forward as well'
         if 'depth' in fields and 'pressure' in fields:
             yield f'{where}.fields: both depth and pressure, expected one of them'
         if 'depth' in fields and self.water is None:

@@ -130,7 +130,7 @@ class Database:
 
     def _connect(self) -> sqlite3.Connection:
         open_file(self.path, BagError).close()
-        # A recorder that was killed leaves its last messages in a log beside the database, which
+        # A recorder that was killed leaves its last messages in a log next to the database, which
         # is only looked at when the file is not said to be immutable.
         log = self.path.with_name(f'{self.path.name}-wal')
         immutable = '' if log.is_file() and log.stat().st_size else '&immutable=1'

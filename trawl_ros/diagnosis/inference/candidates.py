@@ -56,7 +56,7 @@ class Candidate:
 def lower_edges(linearised: Sequence[Linearised]) -> FloatArray:
     """Depths (n,), m, of the lower edge of the net's mouth.
 
-    Where no sensor tells the opening it is the median of the others, none where none does; the
+    Where no sensor measures the opening it is the median of the others, none where none does; the
     doors stand for a headline without a depth.
     """
     means = [linear.window.means for linear in linearised]

@@ -65,7 +65,7 @@ class Marginal:
         )
 
     def given(self, places: Sequence[int], mean: FloatArray, std: FloatArray) -> 'Marginal':
-        """Return the marginal beside values with a normal prior, which are integrated out."""
+        """Return the marginal with additional values of a normal prior, integrated out."""
         rows = list(places)
         score = self.score - self.information[:, rows] @ mean
         own = self.information[np.ix_(rows, rows)]

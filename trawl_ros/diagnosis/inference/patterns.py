@@ -12,7 +12,7 @@ from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.records.channels import MEASURED
 
 VARIABLES = ('warp length', 'warp length²', 'speed', 'warp length × speed', 'time in tow', 'course')
-"""Variables that a channel's residuals may follow, beside a constant."""
+"""Variables that a channel's residuals may follow, as well as a constant."""
 
 SHAPES = ('throughout', *VARIABLES)
 

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Joint refit of boards and effects, all windows solved anew, from first-order values."""
+"""Joint refit of boards and effects, all windows solved again, from first-order values."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -37,7 +37,7 @@ warps, which would pass for an effect. Readings that scatter less than is stated
 nor the form of an effect better, so that what these are wrong by must not count the more."""
 
 POOR = 3.0
-"""A misfit from where the boards are fitted anew, another way."""
+"""A misfit from where the boards are fitted again, another way."""
 
 REFITTING = replace(OPTIONS, iterations_final=8, halvings=2)
 """Options of a refit, which starts near to where it converges."""

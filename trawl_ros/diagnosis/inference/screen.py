@@ -63,7 +63,7 @@ class Screen:
     Attributes
     ----------
     fit
-        Of the boards alone, with noise as it is beside any smooth function of the covariates.
+        Of the boards alone, with noise as it is around any smooth function of the covariates.
     weights
         Huber weights of its tows, likewise.
     errors

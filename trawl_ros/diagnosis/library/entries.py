@@ -78,7 +78,7 @@ def library(
     effects
         Effects of the catalogue that are possible; all of them if None.
     more
-        Tables beside those of the package.
+        Tables in addition to those of the package.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Effect that changes numbers at keys of a gear file and builds the gear anew."""
+"""Effect that changes numbers at keys of a gear file and rebuilds the gear."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -104,7 +104,7 @@ def _change(gear: GearRecord, record: EntryRecord, side: int | None) -> GearFile
         name=f'{one}{record.name}',
         sentence=f'{record.larger.capitalize()} than the gear file has{where}.',
         parameters=(Parameter('change', record.unit, 0.0, record.low, record.high, record.usual),),
-        excited_by='any tow, beside a baseline',
+        excited_by='any tow, compared with a baseline',
         record=record,
         believed=gear,
         side=side,

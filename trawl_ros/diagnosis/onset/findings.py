@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Findings of a tow that goes on: what has begun, when, how large, and what it is not told from."""
+"""Findings of a tow that goes on: what has begun, when, how large, and what else fits."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -41,7 +41,7 @@ class Finding:
     values
         Of it, by parameter.
     alike
-        Names of all that are not told from it, without it.
+        Names of all others with similar evidence.
     rarity, limit
         -log10 of the probability of as much evidence at one onset by chance, and what it has to be
         beyond.
@@ -49,8 +49,8 @@ class Finding:
     Examples
     --------
     >>> from trawl_ros.diagnosis.onset.findings import Finding
-    >>> told = Finding(1, 'raised', 600, 600, 0, 0, 60, 'kite', 'It is lost', {}, (), 9.0, 8.0)
-    >>> told.open
+    >>> found = Finding(1, 'raised', 600, 600, 0, 0, 60, 'kite', 'It is lost', {}, (), 9.0, 8.0)
+    >>> found.open
     True
     """
 
@@ -86,7 +86,7 @@ class Finding:
         """Finding in one sentence."""
         ago = (self.updated_ns - self.onset_ns) / SECOND / 60.0
         wide = (self.onset_high_ns - self.onset_low_ns) / SECOND / 60.0
-        also = f'; not told from {", ".join(self.alike)}' if self.alike else ''
+        also = f'; similar evidence for {", ".join(self.alike)}' if self.alike else ''
         sizes = ', '.join(
             f'{name} {one.value:.3g} ({one.low:.3g} to {one.high:.3g}) {one.unit}'.rstrip()
             for name, one in self.values.items()

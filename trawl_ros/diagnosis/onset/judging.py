@@ -13,7 +13,7 @@ from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
 from trawl_ros.diagnosis.onset.stretches import LIVE
 
 ALIKE = 6.0
-"""Candidates whose evidence comes within this of the best's are not told from it, as by the rules
+"""Candidates whose evidence comes within this of the best's are listed with it, as by the rules
 for steady windows."""
 
 

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Log book of findings: who was told what and when, a line of JSON for each event."""
+"""Log book of findings: what was published to whom and when, a line of JSON for each event."""
 
 import json
 import os

@@ -42,7 +42,7 @@ NOT_CLOSE = 'something may have begun, or boards are others: the tow is watched 
 """Reason for which no finding is raised of evidence beyond the limit."""
 
 BEFORE, QUIET = FEWEST - 1, 8
-"""Stretches up to the newest, behind the first that a model begun anew with the next is towed
+"""Stretches up to the newest, behind the first that a model begun again with the next is towed
 along; and the last of those before, that first among them, in which nothing may have moved: the
 model would begin in an equilibrium while the gear was on its way to one."""
 
@@ -161,7 +161,7 @@ class OnsetMonitor:
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew with no tow; findings so far stay as they are."""
+        """Begin again with no tow; findings so far stay as they are."""
         if (left := self.open) is not None:
             self._put(replace(left, state='settled'))
         self._cutter = StretchCutter(self._depth)

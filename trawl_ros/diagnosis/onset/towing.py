@@ -189,7 +189,7 @@ class ModelTow:
             self._motion = None
             return last.why_not
         if last.number < self._again:
-            return 'the tow of the model is begun anew after a stop'
+            return 'the tow of the model is begun again after a stop'
         if self._motion is None or last.number != self._next:
             if last.place * LIVE.stretch_s < SETTLING_S - 1e-6:
                 return 'what the gear did before is not known'

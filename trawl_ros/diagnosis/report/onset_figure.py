@@ -64,8 +64,9 @@ def onset_figure(
             _mark(axes, found, start_ns)
     for found in findings:
         raised = (found.raised_ns - start_ns) / SECOND / 60.0
+        name, delay = found.name.replace('_', ' '), found.delay_s / 60.0
         below.annotate(
-            f'{found.name.replace("_", " ")}, told {found.delay_s / 60.0:.1f} min\nafter its onset',
+            f'{name}, found {delay:.1f} min\nafter its onset',
             (raised, 0.97), (5, 0), xycoords=('data', 'axes fraction'),
             textcoords='offset points', va='top', fontsize='small',
         )  # fmt: skip

@@ -133,7 +133,7 @@ def in_unit(unit: str, si: float = 1.0) -> Callable[[type[ErrorsT]], type[Errors
 
     def with_keys(cls: type[ErrorsT]) -> type[ErrorsT]:
         cls.unit, cls.si = unit, si
-        # Pydantic's options are keywords beside those of the fields, which mypy cannot tell apart.
+        # Pydantic's options are keywords like those of the fields, which mypy cannot tell apart.
         model: type[ErrorsT] = create_model(  # type: ignore[call-overload]  # as said above
             cls.__name__, __base__=cls, __doc__=cls.__doc__, __module__=cls.__module__, **keys
         )

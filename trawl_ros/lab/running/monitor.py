@@ -116,7 +116,7 @@ class Monitor:
         os.environ.update(self._environment)
         self._context = Context()
         rclpy.init(args=[], context=self._context)
-        # Recorded beside the others, its diagnostics are to lie in their time.
+        # Recorded with the others, its diagnostics must lie in their time.
         in_simulated_time = Parameter('use_sim_time', value=True)
         self._node = TrawlNode(
             self.NAME,

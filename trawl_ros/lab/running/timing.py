@@ -31,7 +31,7 @@ def shares(work: Callable[[], object], parts: Mapping[str, Part]) -> str:
         Work to look at.
     parts
         Functions by what they are called in a report, none of which calls another; what they
-        call is counted with them. The rest is told too.
+        call is counted with them. The rest is reported too.
 
     Returns
     -------

@@ -143,7 +143,7 @@ def steady_windows(
     """One window of each steady state, as the finder would find it.
 
     Readings are the plant's observables and inputs with an offset and an error of scale, both
-    drawn anew for each tow, an offset drawn anew for each state, and noise, a part of which is
+    drawn again for each tow, an offset drawn again for each state, and noise, a part of which is
     autoregressive of first order. Mean and its stated error are worked out of the readings as the
     finder does.
 

@@ -25,7 +25,7 @@ def announce_often(
 ) -> None:
     """Name the package's profile to Fast DDS, unless the user has one; before ROS is up.
 
-    Half of the nodes that start beside others were heard of 3 s later than the rest without it:
+    Without it, half of the nodes that start together were heard of 3 s later than the rest:
     that is the period in which one that runs already announces itself again, where its answer to
     the newcomer was lost.
 
@@ -46,7 +46,7 @@ def announce_often(
 
 
 def variables(version: str) -> tuple[str, ...]:
-    """Return the variables that the Fast DDS beside a version of rclpy reads without a warning.
+    """Return the variables that the Fast DDS of a version of rclpy reads without a warning.
 
     Both are returned for a version that is not known.
     """

@@ -120,7 +120,7 @@ def clock_status(node: Node) -> Status:
 
 
 def of_one_node(publishers: Sequence[TopicEndpointInfo]) -> bool:
-    """True if publishers belong to nodes of one known name: one that was started anew, or twins."""
+    """True if publishers belong to nodes of one known name: a restarted node, or twins."""
     names = {(info.node_namespace, info.node_name) for info in publishers}
     return len(names) == 1 and UNKNOWN not in next(iter(names))
 

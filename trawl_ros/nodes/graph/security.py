@@ -22,7 +22,7 @@ IN_THE_CLEAR = (
 )
 
 FINISHING = 'Failed to fini rosout publisher'
-"""Beginning of a warning by rclpy when the middleware refuses, beside the refusal."""
+"""Beginning of a warning by rclpy when the middleware refuses, apart from the refusal."""
 
 
 def is_wanted(environment: Mapping[str, str] = os.environ) -> bool:

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Source of a subscription: one publisher, told from others by the numbers of its messages.
+"""Source of a subscription: one publisher, recognised by the numbers of its messages.
 
 ROS gives subscribers no name of who has sent a message, but the number that its publisher gave it.
 """
@@ -67,7 +67,7 @@ class Source:
     """Source: the publisher that was heard first, as long as it is heard.
 
     Two sources of one quantity contradict each other, and a mixture of both is worse than either.
-    A node that was killed and started anew is the source again from its first message, though the
+    A node that was killed and started again is the source again from its first message, though the
     middleware has both for some seconds: it bears the name of the other and counts from one.
 
     Parameters

@@ -118,7 +118,7 @@ class Received(NamedTuple):
 
 
 class Channel(ABC):
-    """Open link: bytes in and out, none of which waits for longer than it is told."""
+    """Open link: bytes in and out, none of which waits for longer than its timeout."""
 
     datagrams = False
     turned_away = 0
@@ -179,7 +179,7 @@ class _Udp(Channel):
         found: list[Received] = []
         if select.select([self._socket], [], [], timeout_s)[0]:
             with suppress(BlockingIOError):
-                # One source for all senders: a datagram is whole. The host tells who speaks; a
+                # One source for all senders: a datagram is whole. The host says who speaks; a
                 # port does not, for some open another for each sentence.
                 while len(found) < 200:
                     data, (host, _) = self._socket.recvfrom(READ_BYTES)

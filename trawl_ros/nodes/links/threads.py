@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Threads beside a node that keep links open: lines in, sentences out, in bounded memory."""
+"""Threads of a node that keep links open: lines in, sentences out, in bounded memory."""
 
 import time
 from abc import ABC, abstractmethod

@@ -87,7 +87,7 @@ class ViewerServer:
     backlog
         Messages that wait at most for each viewer.
     origins
-        Origins of pages that may connect, beside those of this machine.
+        Origins of pages that may connect, as well as those of this machine.
     tells_time
         True if viewers are to go by the time that `tell_time` gives.
 

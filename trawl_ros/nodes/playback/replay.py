@@ -108,7 +108,7 @@ def replayed(
         If a topic that is wanted is not there or cannot be played, or none can.
     """
     definitions, recorded = bag.definitions(), bag.offered()
-    # A new clock is made where one is wanted; an old one beside it would be a second.
+    # A new clock is made where one is wanted; an old one would be a second one.
     there = sorted(set(definitions) - {CLOCK.name})
     if missing := sorted(set(wanted) - set(there)):
         raise BagError(f'{bag.path}: no topic {", ".join(missing)}; there are: {", ".join(there)}')

@@ -130,7 +130,7 @@ class ConsumerProgress:
         For one that deals with what other consumers of the source give out, which may fall
         silent: whether nothing is left to deal with. Having heard nothing for a while it is then
         as far as the clock. Otherwise the source would wait for it, it for them, and they,
-        started anew, for the source.
+        started again, for the source.
     busy
         True if it has not dealt with all that it was given yet: it is waited for then, and not
         taken for one that the rest does not concern.
@@ -160,7 +160,7 @@ class ConsumerProgress:
         return self._done
 
     def done(self, stamp: int) -> None:
-        """Register that all up to this stamp (ns) is dealt with; an earlier one starts anew."""
+        """Register that all up to this stamp (ns) is dealt with; an earlier one starts again."""
         self._done = stamp
         self._heard_at = time.monotonic()
         self._node.real_time_factor.reached(stamp)
@@ -210,7 +210,7 @@ class Consumers:
 
     Those it needs count from the beginning on. Others count once they have dealt with anything
     of it: what was published before they were there will never reach them, so to wait for
-    them would be to wait for ever. The same holds for one that was started anew; and one that
+    them would be to wait for ever. The same holds for one that was started again; and one that
     is not heard for `SILENT_S`, or has kept the source waiting for `STALLED_S` beyond what its
     progress is worth at `LEAST_RATE`, does not count, needed or not, until it is heard or gets on
     again.
@@ -237,7 +237,7 @@ class Consumers:
         node.listen(SYNC, self._take, STREAM, HEADER)
 
     def ready(self) -> bool:
-        """True if all have been there, and discovery has come to rest; once true it stays so."""
+        """True if all have been there, and discovery has finished; once true it stays so."""
         subscribers = self._node.subscribers()
         if subscribers != self._subscribers:
             self._subscribers, self._changed = subscribers, time.monotonic()
@@ -267,7 +267,7 @@ class Consumers:
         ]
 
     def begin(self, stamp: int) -> None:
-        """Begin data time (anew) at a stamp (ns): earlier reports do not count."""
+        """Begin data time again at a stamp (ns): earlier reports do not count."""
         self._stamps = dict.fromkeys(self._names, stamp)
         self._waits.clear()
         self._span = (stamp, stamp)

@@ -139,7 +139,7 @@ class TrawlNode(ConnectedNode):
 
     SPECS: ClassVar[tuple[Spec, ...]] = ()
     DRAINS: ClassVar[bool] = False
-    """True if messages on their way are still to be taken in when told to stop."""
+    """True if messages on their way are still to be taken in when the node is to stop."""
 
     def __init__(self, name: str, **kwargs: Any) -> None:
         # Before ROS itself listens to /clock.

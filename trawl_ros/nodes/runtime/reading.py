@@ -23,7 +23,7 @@ MOST_HELD = 2000
 class Rewinding:
     """Detector of a rewound stream, such as a bag that loops; single false stamps do not count.
 
-    The winch tells the time, for without it there are no windows. What goes back is held until
+    The winch gives the time, since without it there are no windows. What goes back is held until
     three of its readings in a row do, or one does not: forgetting all for one false stamp
     would be worse than to refuse the reading, and what the new round begins with is not to be
     lost. A sensor whose own clock is set back is no new round.
@@ -110,14 +110,14 @@ class OneSourceEach:
     """Check that each instrument topic of a node has one source.
 
     Two publishers are told apart by the numbers of their messages; what a player or a bridge
-    passes on comes from one, and is told by its stamps and values.
+    passes on comes from one, and is recognised by its stamps and values.
     """
 
     def __init__(self) -> None:
         self.forget()
 
     def forget(self) -> None:
-        """Reset, as for a stream that begins anew."""
+        """Reset, as for a stream that begins again."""
         self._watches: defaultdict[str, SourceWatch] = defaultdict(SourceWatch)
 
     def check(self, topic: str, sample: Sample) -> None:
@@ -126,7 +126,7 @@ class OneSourceEach:
         Raises
         ------
         MessageError
-            If those so far are of two sources, or their clock tells no time.
+            If those so far are of two sources, or their clock gives no time.
         """
         if doubt := self._watches[topic].take(0, sample):
             raise MessageError(f'{topic} {doubt.text}; it is not used')

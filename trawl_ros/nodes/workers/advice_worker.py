@@ -115,7 +115,7 @@ class AdviceWorker(Worker[object]):
             self.put(fit)
 
     def _telling(self, activity: str, act: Callable[[], None]) -> bool:
-        """Attempt an action; without advice the node still estimates, so an error is only told."""
+        """Attempt an action; an error is only reported, since the node estimates without advice."""
         done = self.attempt(activity, act)
         if not done:
             self._on_advice(self._advice, self.troubles[activity])

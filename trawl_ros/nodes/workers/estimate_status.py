@@ -128,7 +128,7 @@ def instruments_status(estimate: Estimate) -> Status:
 
 
 def motion_status(motion: MotionKnowledge, windows: Estimate | None) -> Status:
-    """Return what all of the tow tells, beside the estimate of its steady windows."""
+    """Return the estimate of the whole tow, next to that of its steady windows."""
     values = {
         'minutes': f'{motion.minutes:.1f}',
         'used': str(motion.estimate is not None).lower(),

@@ -83,7 +83,7 @@ def onset_status(finding: Finding, acknowledged: bool) -> Status:
         'onset low': f'{finding.onset_low_ns / SECOND:.3f}',
         'onset high': f'{finding.onset_high_ns / SECOND:.3f}',
         'raised': f'{finding.raised_ns / SECOND:.3f}',
-        'not told from': ', '.join(finding.alike),
+        'similar evidence': ', '.join(finding.alike),
         'rarity': f'{finding.rarity:.1f}',
         'limit': f'{finding.limit:.1f}',
     }

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Learning from all of the tow beside its steady windows: what fails in it is told, no more."""
+"""Learning from the whole tow as well as its steady windows; failures are reported."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from trawl_ros.estimation.live_motion import LiveMotion
     from trawl_ros.estimation.motion.outcome import MotionOutcome
 
-ENDED = 'the node was told to end before all of the tow was fitted'
-BEFORE = 'what came before the node was started anew is known by its steady windows alone'
+ENDED = 'the node ended before the whole tow was fitted'
+BEFORE = 'the tow before the restart of the node is known by its steady windows alone'
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class MotionLearner:
         self.knowledge = MotionKnowledge(lost=BEFORE if resumed else '')
 
     def reset(self) -> None:
-        """Begin anew with no tow."""
+        """Begin again with no tow."""
         if self._live is not None:
             self._live.reset()
         self.knowledge = MotionKnowledge()
@@ -152,7 +152,7 @@ class MotionLearner:
         except Exception as reason:
             failed = not isinstance(reason, TrawlError)
             sentence = sentence_of(reason)
-            # An estimate that does not come to rest at the end is none that one may rely on.
+            # An estimate that has not converged at the end is not reliable.
             self.knowledge = replace(before, estimate=None, why_not=sentence, failed=failed)
             raise TrawlError(sentence) from reason
         windows = None if identification is None else identification.estimate
