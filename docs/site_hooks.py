@@ -66,3 +66,13 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         lambda link: f']({link[1]}{PAGES[link[2]]}',
         markdown,
     )
+
+
+def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Let names of topics and types in tables break after their slashes, and nowhere else."""
+    return re.sub(
+        r'<td[ >].*?</td>',
+        lambda cell: re.sub(r'(?<=[\w}])/(?=[\w{])(?![^<]*>)', '/<wbr>', cell[0]),
+        html,
+        flags=re.DOTALL,
+    )

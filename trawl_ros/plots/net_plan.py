@@ -114,11 +114,17 @@ def _label(axes: Axes, piece: PieceRecord, corners: list[tuple[float, float]], w
     ropes = piece.orientation == 'ropes'
     if ropes:
         counts, knots = f'{piece.front_meshes:g} ropes of {piece.length:.3g} m', ''
+    x, side = (across, 'center') if fits else (right + 0.02 * wide, 'left')
+    if piece.part == 'wing' and abs(across) > 0.02 * wide:
+        # From the seam inward and towards the mouth, for the cut edge leaves no room ahead.
+        behind = np.average([corner[1] for corner in corners]) + 0.25 * piece.length
+        x = max((corner[0] for corner in corners), key=abs) - np.sign(across) * 0.02 * wide
+        side = 'left' if across < 0.0 else 'right'
     axes.text(
-        across if fits else right + 0.02 * wide,
+        x,
         behind,
         f'{counts}\n{piece.material} {1e3 * piece.twine.diameter:.2g} mm{knots}',
-        ha='center' if fits else 'left',
+        ha=side,
         va='center',
         fontsize=5.5,
         parse_math=False,

@@ -11,6 +11,7 @@ from trawl_ros.gear.catch import CatchBody
 from trawl_ros.model.assembly import points_of
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.kite import LiftingBodies
+from trawl_ros.model.observables import Observables, observe
 from trawl_ros.model.state import State, Tow
 from trawl_ros.report import style
 from trawl_ros.solver.first_guess import first_guess
@@ -29,6 +30,12 @@ ASTERN = np.array([-1.0, 1.0, 1.0])
 """Signs of axes astern, to port and up."""
 
 KITE = '#d98c00'
+
+WIDTH_IN, LEFT_IN = 13.0, 8.5
+"""Width (inches) of the figure, and of the views from above and from the side."""
+
+LEAST_IN, LABELS_IN = 1.2, 1.8
+"""Least height of a view, and room for all titles and labels of axes (inches)."""
 
 THICK = ('_bridle', '_sweep', '_backstrop', 'headrope', 'footrope', '_wing_end')
 COLOURS = {
@@ -51,8 +58,13 @@ def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
     lines = _lines(model, shape, tow)
     points = np.concatenate([piece.reshape(-1, 3) for _, piece in lines])
     origin = shape.board_positions.mean(axis=0)
-    figure = Figure(figsize=(13.0, 9.0), layout='constrained')
-    grid = figure.add_gridspec(2, 2, width_ratios=(2.3, 1.0))
+    along, across, tall = np.ptp(points, axis=0)
+    heights = [max(LEAST_IN, LEFT_IN * size / along) for size in (across, tall)]
+    figure = Figure(figsize=(WIDTH_IN, sum(heights) + LABELS_IN), layout='constrained')
+    grid = figure.add_gridspec(
+        2, 2, width_ratios=(LEFT_IN, WIDTH_IN - LEFT_IN), height_ratios=heights
+    )
+    seen = None if state is None else observe(model, state, tow)
     places = grid[0, 0], grid[1, 0], grid[:, 1]
     for place, (title, plane, labels) in zip(places, VIEWS, strict=True):
         axes = figure.add_subplot(place)
@@ -77,12 +89,21 @@ def rigged_gear_figure(model: GearModel, state: State | None = None) -> Figure:
         axes.set_xlim(low[0] - margin, high[0] + margin)
         axes.set_ylim(low[1] - margin, high[1] + margin)
         axes.set_aspect('equal', adjustable='box')
-        axes.set_title(title, fontsize='medium')
+        axes.set_title(title + _sizes(title, seen), fontsize='medium')
         axes.set_xlabel(labels[0])
         axes.set_ylabel(labels[1])
     state_of = 'as it is built, not solved' if state is None else 'in a steady state'
     figure.suptitle(f'{model.gear.name}: the rigged gear {state_of}', parse_math=False)
     return figure
+
+
+def _sizes(view: str, seen: Observables | None) -> str:
+    """Sizes of the gear that a view shows, in m, where it is solved."""
+    if seen is None or view == 'from the side':
+        return ''
+    if view == 'from above':
+        return f': doors {seen.door_spread:.0f} m apart'
+    return f': mouth {seen.vertical_opening:.0f} m high, {seen.horizontal_opening:.0f} m wide'
 
 
 def _lines(model: GearModel, state: State, tow: Tow) -> list[tuple[str, FloatArray]]:

@@ -20,8 +20,8 @@ BEGAN = 'What began during the tow'
 MOST_Z = 8.0
 """Colours end here."""
 
-BARS = 10
-"""Number of causes that are drawn."""
+BARS, LEAST = 10, 0.005
+"""Largest number of causes that are drawn, and their least probability."""
 
 
 def drawings(diagnosis: Diagnosis) -> list[Drawing]:
@@ -31,8 +31,8 @@ def drawings(diagnosis: Diagnosis) -> list[Drawing]:
         made.append(
             Drawing(
                 'probabilities',
-                'Probability that each cause is there (dark), and any cause of its place in the '
-                'tree of causes, which one check on deck finds (light).',
+                'Probability of each cause (dark), and of any cause of its group, which one check '
+                'on deck finds (light).',
                 probability_figure(diagnosis.posterior), LEAD,
             )
         )  # fmt: skip
@@ -107,6 +107,7 @@ def probability_figure(posterior: Posterior) -> Figure:
     rows = [
         (_words(name), probability, nodes[posterior.entry(name).entry.node.path])
         for name, probability in list(leaves.items())[:BARS]
+        if nodes[posterior.entry(name).entry.node.path] > LEAST
     ]
     rows += [
         ('something else', posterior.unknown, 0.0), ('boards alone', posterior.nothing, 0.0)

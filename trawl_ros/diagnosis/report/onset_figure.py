@@ -21,7 +21,12 @@ MOST_DRAWN = 4
 AFTER_S = 600.0
 """Time since the onset by which they are chosen."""
 
-COLOURS = (MEASURED, OTHER, STARBOARD, PORT)
+SIDES = {'port': PORT, 'starboard': STARBOARD}
+OTHERS = (MEASURED, OTHER, NETTING, 'black')
+"""Colours of channels of a side of the ship, and of all others in their order."""
+
+STYLES = {'tension': '-', 'depth': '--', 'pitch': '-.', 'roll': ':'}
+"""Line style of a channel by the end of its name; solid for all others."""
 
 
 def onset_figure(
@@ -47,9 +52,15 @@ def onset_figure(
     for column in range(len(WATCHED)):
         if column not in shown:
             above.plot(minutes, course.innovations[:, column], color=FAINT, lw=0.6, alpha=0.6)
-    for colour, column in zip(COLOURS, shown, strict=False):
-        name = WATCHED[column].replace('_', ' ')
-        above.plot(minutes, course.innovations[:, column], color=colour, lw=1.4, label=name)
+    others = iter(OTHERS)
+    for column in shown:
+        side, _, kind = WATCHED[column].partition('_')
+        colour = SIDES.get(side) or next(others)
+        above.plot(
+            minutes, course.innovations[:, column], color=colour, lw=1.4,
+            ls=STYLES.get(kind.rpartition('_')[2], '-') if side in SIDES else '-',
+            label=WATCHED[column].replace('_', ' '),
+        )  # fmt: skip
     above.set_ylabel('whitened innovation / std')
     below.plot(minutes, course.rarities, color=MEASURED, lw=1.4)
     below.axhline(limit, color='black', lw=0.8, ls='--')
@@ -95,4 +106,4 @@ def _mark(axes: Axes, found: Finding, start_ns: int) -> None:
     )
     axes.axvspan(low, high, color=NETTING, alpha=0.25, lw=0.0, label='onset with its interval')
     axes.axvline(onset, color=NETTING, lw=1.2)
-    axes.axvline(raised, color=PORT, lw=1.2, ls='-.', label='finding raised')
+    axes.axvline(raised, color='black', lw=1.2, ls=':', label='finding raised')

@@ -36,9 +36,9 @@ def _headline(diagnosis: Diagnosis) -> str:
         return f'A sensor is frozen ({listed}). Of the other readings: {diagnosis.reason}.'
     if diagnosis.verdict == 'NAMED':
         named = ' and '.join(
-            f'{own.words} ({own.probability:.1%})'
+            f'{own.words} ({100.0 * own.probability:.1f} %)'
             if own.is_leaf
-            else f'a cause at {own.words} ({own.probability:.1%})'
+            else f'in the group {own.words} ({100.0 * own.probability:.1f} %)'
             for own in diagnosis.named
         )
         return f'The cause is {named}: {_sizes(diagnosis)}.'
@@ -53,7 +53,7 @@ def _likely(diagnosis: Diagnosis) -> str:
     posterior = diagnosis.posterior
     assert posterior is not None
     listed = [
-        f'{name.replace("_", " ")} ({probability:.0%})'
+        f'{name.replace("_", " ")} ({100.0 * probability:.0f} %)'
         for name, probability in posterior.leaves.items()
         if name in diagnosis.among
     ]
@@ -75,8 +75,8 @@ def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
     posterior, best, holdout = diagnosis.posterior, diagnosis.best, diagnosis.holdout
     if posterior is not None:
         lines.append(
-            f'The boards alone hold a probability of {posterior.nothing:.2g}, something that the '
-            f'library does not have {posterior.unknown:.2g}.'
+            f'The probability that nothing is missing is {_percent(posterior.nothing)}, that '
+            f'something outside the library is missing {_percent(posterior.unknown)}.'
         )
     if diagnosis.moved is not None:
         lines.append(f'The boards moved from the gear file: {_moved(diagnosis.moved)}.')
@@ -94,11 +94,11 @@ def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
             ''
             if holdout.removed_by_placebo is None
             else f'; the best other cause, {(holdout.instead or "").replace("_", " ")}, removes '
-            f'{holdout.removed_by_placebo:.0%}'
+            f'{100.0 * holdout.removed_by_placebo:.0f} %'
         )
         lines.append(
-            f'On held-out {kept_back} it removes {holdout.removed:.0%} of the error beyond what '
-            f'instruments explain{placebo}.'
+            f'On held-out {kept_back} it removes {100.0 * holdout.removed:.0f} % of the error '
+            f'beyond what instruments explain{placebo}.'
         )
     if diagnosis.split.by == 'state' and diagnosis.split.kept_back:
         lines.append(
@@ -106,6 +106,10 @@ def sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
             'on another day.'
         )
     return tuple(own_parts(line, diagnosis.gear) for line in lines)
+
+
+def _percent(probability: float) -> str:
+    return 'below 0.1 %' if probability < 1e-3 else f'{100.0 * probability:.1f} %'
 
 
 def _sizes(diagnosis: Diagnosis) -> str:

@@ -51,7 +51,7 @@ def write_diagnosis(diagnosis: Diagnosis, sources: Sequence[SourceBag], folder: 
             'trawl_ros.diagnosis.report',
             name,
             result={**numbers, 'gear': diagnosis.gear.name},
-            headline=headline(diagnosis),
+            headline=' '.join(filter(None, (headline(diagnosis), _gain(diagnosis)))),
             sentences=sentences(diagnosis),
             what_to_do=what_to_do(diagnosis),
             errors=[] if diagnosis.holdout is None else list(_error_rows(diagnosis.holdout)),
@@ -61,6 +61,20 @@ def write_diagnosis(diagnosis: Diagnosis, sources: Sequence[SourceBag], folder: 
             repaired=gear is not None,
         )
         write_text(folder / name, text)
+
+
+def _gain(diagnosis: Diagnosis) -> str:
+    """Return how much nearer the cause brings the sensor that is furthest off, in a sentence."""
+    holdout = diagnosis.holdout
+    if diagnosis.verdict not in ('NAMED', 'AMBIGUOUS') or holdout is None or holdout.after is None:
+        return ''
+    before, after = holdout.before, holdout.after.rms
+    worst = max(after, key=lambda name: before.rms[name] / before.expected[name])
+    unit, factor = FIELD_UNITS[CHANNELS[worst].unit]
+    return (
+        f'With it the error of {worst.replace("_", " ")} on held-out tows falls from '
+        f'{factor * before.rms[worst]:.2f} to {factor * after[worst]:.2f} {unit}.'
+    )
 
 
 def _error_rows(holdout: HoldoutComparison) -> Iterator[tuple[str, ...]]:
@@ -73,5 +87,6 @@ def _error_rows(holdout: HoldoutComparison) -> Iterator[tuple[str, ...]]:
             holdout.after and holdout.after.rms.get(name),
             holdout.placebo and holdout.placebo.rms.get(name),
         )
-        cells = ('–' if one is None else f'{factor * one:.2f} {unit}' for one in errors)
+        space = '' if unit == '°' else ' '
+        cells = ('–' if one is None else f'{factor * one:.2f}{space}{unit}' for one in errors)
         yield name.replace('_', ' '), *cells

@@ -46,11 +46,18 @@ def channels_figure(report: Report) -> Figure:
         scale, unit = (1e-3, 'kN') if channel.unit == 'N' else (1.0, channel.unit)
         for speed, colour in colours.items():
             rows = np.flatnonzero(speeds == speed)
-            for values, line, width in ((report.at_start, '--', 0.9), (report.at_end, '-', 1.6)):
+            # A speed towed at one length has no line, but its marker: hollow before, filled after.
+            for values, line, face in (
+                (report.at_start, '--', 'white'),
+                (report.at_end, '-', colour),
+            ):
                 at, middle = _by_length(length[rows], values[rows, i])
-                # A speed towed at one length has no line, but a dash.
-                axes.plot(at, scale * middle, line, marker='_', ms=9, color=colour, lw=width)
-            axes.plot(length[rows], scale * report.measured[rows, i], 'o', ms=5, color=colour)
+                axes.plot(
+                    at, scale * middle, line, marker='s', ms=6, mfc=face, color=colour, lw=1.2
+                )
+            axes.plot(
+                length[rows], scale * report.measured[rows, i], 'x', ms=7, mew=1.6, color=colour
+            )
         axes.set_title(
             f'{channel.words}: error {100.0 * errors["start"][i]:.1f} % before, '
             f'{100.0 * errors["end"][i]:.1f} % after',
@@ -66,9 +73,9 @@ def channels_figure(report: Report) -> Figure:
             Line2D([], [], color=colour, label=f'{speed:.1f} m/s')
             for speed, colour in colours.items()
         ),
-        Line2D([], [], color=FAINT, marker='o', ls='', label='measured'),
-        Line2D([], [], color=FAINT, ls='--', label='before'),
-        Line2D([], [], color=FAINT, ls='-', label='after'),
+        Line2D([], [], color=FAINT, marker='x', mew=1.6, ls='', label='measured'),
+        Line2D([], [], color=FAINT, marker='s', mfc='white', ls='--', label='before'),
+        Line2D([], [], color=FAINT, marker='s', ls='-', label='after'),
     ]
     figure.legend(handles=handles, loc='outside lower center', ncols=len(handles), frameon=False)
     return figure
