@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.effects.base.effect import Situation
-from trawl_ros.lab.trials.diagnosing import _of_bags
+from trawl_ros.lab.missing_effect.trials_folder import read_bags
 from trawl_ros.lab.trials.hidden_effects.inside import INSIDE
 from trawl_ros.lab.trials.making import make
 from trawl_ros.lab.trials.plant import FINER, draw_plant
@@ -57,8 +57,8 @@ def test_what_is_found_in_a_bag_is_what_was_towed(plant, tmp_path):
     courses = [quasi_steady(tow, own) for tow, own in zip(FULL.tows, looks, strict=False)]
     rng = np.random.default_rng(1)
     record_tows(tmp_path / 'bags', courses, plant.model.water, AS_STATED, 0.0, rng)
-    windows, names = _of_bags(tmp_path / 'bags', FINER.model(GEAR))
-    assert len(names) == 2
+    windows = read_bags(sorted((tmp_path / 'bags').iterdir()), FINER.model(GEAR))
+    assert {window.tow for window in windows} == {0, 1}
     found = set()
     for window in windows:
         # As at sea, the noise of the log hides that some states are steady.
@@ -81,7 +81,7 @@ def test_channels_that_need_not_be_there_fall_silent(plant, tmp_path):
     courses = [quasi_steady(FULL.tows[0], plant.towed((), FULL)[0])]
     rng = np.random.default_rng(2)
     record_tows(tmp_path / 'bags', courses, plant.model.water, AS_STATED, 1.0, rng)
-    windows, _ = _of_bags(tmp_path / 'bags', FINER.model(GEAR))
+    windows = read_bags([tmp_path / 'bags' / 'tow_01'], FINER.model(GEAR))
     assert windows
     assert all('port_pitch' not in window.means for window in windows)
     assert all('net_depth' in window.means for window in windows)

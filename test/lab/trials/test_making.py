@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.lab.trials.diagnosing import read_windows, write_windows
+from trawl_ros.lab.missing_effect.trials_folder import read_windows, write_windows
 from trawl_ros.lab.trials.hidden_effects.inside import INSIDE
 from trawl_ros.lab.trials.hidden_effects.on_deck import ON_DECK
 from trawl_ros.lab.trials.hidden_effects.other_keys import CAUSES
@@ -71,7 +71,7 @@ def test_a_trial_is_the_same_wherever_it_is_made_and_its_strength_is_in_its_key(
     assert key == again
     assert made == same
     assert key.sizes[0] == pytest.approx(-3.0 * key.detectable[0])
-    assert len(made.windows) == len(made.quiet) == sum(len(tow.states) for tow in FULL.tows)
+    assert len(made) == sum(len(tow.states) for tow in FULL.tows)
     twice, _ = make(replace(spec, strength=6.0), 'kaifuha', FINER, SEED)
     assert twice.detectable == key.detectable
 
@@ -117,8 +117,7 @@ def test_swapped_doors_are_there_or_not():
 
 
 def test_windows_survive_their_file(tmp_path):
-    _, made = make(Spec('clean', 0, (), 0.0, (), 0), 'kaifuha', FINER, SEED)
-    windows = made.windows
+    _, windows = make(Spec('clean', 0, (), 0.0, (), 0), 'kaifuha', FINER, SEED)
     write_windows(tmp_path / 'a.json', windows)
     assert read_windows(tmp_path / 'a.json') == windows
     text = (tmp_path / 'a.json').read_text()

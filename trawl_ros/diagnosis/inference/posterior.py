@@ -342,10 +342,11 @@ def infer(
                 patterns,
             )
         )
-    return Posterior(_weighted(found, options.temperature))
+    return Posterior(weighted(found, options.temperature))
 
 
-def _weighted(found: Sequence[Explanation], temperature: float) -> tuple[Explanation, ...]:
+def weighted(found: Sequence[Explanation], temperature: float) -> tuple[Explanation, ...]:
+    """Return explanations with their probabilities, the likeliest first."""
     weights = np.array([own.log_odds + own.log_factor / temperature for own in found])
     shares: FloatArray = np.exp(weights - logsumexp(weights))
     whole = [
