@@ -15,7 +15,7 @@ from trawl_ros.lab.missing_effect.score_report import (
 )
 from trawl_ros.lab.missing_effect.scoring import all_sections
 from trawl_ros.lab.report.page import Section, TextTable
-from trawl_ros.lab.trials.plant import FINER
+from trawl_ros.lab.trials.plant import FINER_MESH
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class BlindStudyPlan:
 
     def asked(self) -> dict[str, object]:
         """Return the settings of each trial."""
-        return {'gear': self.gear, 'seed': self.seed, 'around': FINER.around}
+        return {'gear': self.gear, 'seed': self.seed, 'around': FINER_MESH.around}
 
 
 def run(plan: BlindStudyPlan, work: Work) -> StudyResult:

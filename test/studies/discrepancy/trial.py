@@ -18,7 +18,7 @@ from trawl_ros.lab.missing_effect.methods.diagnosis import answer_of
 from trawl_ros.lab.missing_effect.records import AnswerRecord, TruthRecord
 from trawl_ros.lab.missing_effect.trials_folder import truth_of
 from trawl_ros.lab.trials.making import gear_aboard, make
-from trawl_ros.lab.trials.plant import FINER
+from trawl_ros.lab.trials.plant import FINER_MESH
 from trawl_ros.lab.trials.tows import PLANS
 from trawl_ros.lab.trials.trial import Spec
 
@@ -93,11 +93,11 @@ class BlindTrial:
 def run_blind(task: BlindTask) -> BlindTrial:
     """Make a trial and diagnose it."""
     spec = task.spec
-    key, windows = make(spec, task.gear, FINER, task.seed)
+    key, windows = make(spec, task.gear, FINER_MESH, task.seed)
     if windows is None:
         return BlindTrial(spec.series, spec.number, rules_hash(), key.why_not)
     plan = PLANS[spec.plan]
-    gear = gear_aboard(task.gear, FINER, task.seed, spec.plant, spec.plan)
+    gear = gear_aboard(task.gear, FINER_MESH, task.seed, spec.plant, spec.plan)
     tows = [f'tow {place + 1}' for place in range(len(plan.tows))]
     baseline = frozenset(range(plan.baseline))
     found, seconds = timed(lambda: diagnose_windows(gear, windows, tows, baseline))

@@ -23,7 +23,7 @@ from trawl_ros.lab.report.machine import cpu_model
 from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.report.page import Page, Section, TextTable, write_page
 from trawl_ros.lab.trials.making import MAKING_OPTIONS
-from trawl_ros.lab.trials.plant import FINER
+from trawl_ros.lab.trials.plant import FINER_MESH
 from trawl_ros.report.pictures import Drawing
 from trawl_ros.report.style import FAINT, MEASURED, quiet
 
@@ -114,7 +114,7 @@ def trials_words() -> str:
     """Return how trials are made, in sentences."""
     return (
         'A trial has one baseline and three tows of three steady states, of which the second is '
-        f'held out. The plant is not the model: {FINER}, and netting of another law of drag. '
+        f'held out. The plant is not the model: {FINER_MESH}, and netting of another law of drag. '
         'Windows are computed from linearised steady states; noise and offsets are '
         f'{MAKING_OPTIONS.sensor_deviation:.0%} larger or smaller than stated. The strength of a '
         'cause is a multiple of the smallest size that the likelihood of the plant can show. '

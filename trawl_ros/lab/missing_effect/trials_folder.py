@@ -10,7 +10,7 @@ from pathlib import Path
 from shutil import rmtree
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.files import made_folder, write_json, write_text, written_folder
+from trawl_ros.core.files import empty_folder, made_folder, write_json, write_text, written_folder
 from trawl_ros.core.foreign import load_json, reading
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.core.schema import RecordT, validated
@@ -37,7 +37,7 @@ from trawl_ros.lab.missing_effect.records import (
 )
 from trawl_ros.lab.trials.answers import right_leaves, right_nodes, right_sizes
 from trawl_ros.lab.trials.making import gear_aboard, make, make_bags
-from trawl_ros.lab.trials.plant import FINER
+from trawl_ros.lab.trials.plant import FINER_MESH
 from trawl_ros.lab.trials.tows import PLANS
 from trawl_ros.lab.trials.trial import Form, Key, Spec
 from trawl_ros.records.topics import NAMESPACE
@@ -93,15 +93,15 @@ def make_trials(
     """
     key = KeyRecord(seed=seed, gear=gear, form=form, trials={}, not_possible={})
     if key_file(folder).exists():
-        known = _read(KeyRecord, key_file(folder))
+        wanted, key = key, _read(KeyRecord, key_file(folder))
         for name in ('seed', 'gear', 'form'):
-            found, wanted = getattr(known, name), getattr(key, name)
-            if found != wanted:
+            if getattr(key, name) != getattr(wanted, name):
                 raise TrawlError(
-                    f'{key_file(folder)}: found trials of {name} {found}, expected {name} '
-                    f'{wanted}, or another folder'
+                    f'{key_file(folder)}: found trials of {name} {getattr(key, name)}, expected '
+                    f'{name} {getattr(wanted, name)}, or another folder'
                 )
-        key = known
+    else:
+        empty_folder(folder, force=False)
     made_folder(folder)
     done = step_counter('trials', max(0, trials - len(key.trials)), on_progress)
     while len(key.trials) < trials:
@@ -130,11 +130,11 @@ def _make_one(folder: Path, spec: Spec, key: KeyRecord) -> Key:
     with written_folder(path, TrawlError) as draft:
         draft.mkdir()
         if spec.form == 'windows':
-            made, windows = make(spec, key.gear, FINER, key.seed)
+            made, windows = make(spec, key.gear, FINER_MESH, key.seed)
             write_windows(draft / WINDOWS_FILE, windows or ())
         else:
-            made = make_bags(spec, key.gear, FINER, key.seed, draft / BAGS_FOLDER)
-        gear = gear_aboard(key.gear, FINER, key.seed, spec.plant, spec.plan)
+            made = make_bags(spec, key.gear, FINER_MESH, key.seed, draft / BAGS_FOLDER)
+        gear = gear_aboard(key.gear, FINER_MESH, key.seed, spec.plant, spec.plan)
         write_text(draft / GEAR_FILE, gear_text(gear))
     if not made.testable:
         rmtree(path)

@@ -51,7 +51,7 @@ class BlindTrialPlan:
     baseline: int
 
 
-FULL = BlindTrialPlan(
+FULL_PLAN = BlindTrialPlan(
     tuple(
         PlannedTow(states, eastward=number % 2 == 0)
         for number, states in enumerate((_ONE, _TWO, _THREE, _ONE, _TWO, _THREE, _ONE, _TWO))
@@ -63,7 +63,7 @@ FULL = BlindTrialPlan(
 _FISHING: tuple[State, ...] = ((450.0, 2.2), (650.0, 2.4), (650.0, 2.0))
 _DEEPER: tuple[State, ...] = ((550.0, 2.4), (800.0, 2.2), (450.0, 2.0))
 
-DAY = BlindTrialPlan(
+DAY_PLAN = BlindTrialPlan(
     (
         PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False),
         PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False),
@@ -72,7 +72,7 @@ DAY = BlindTrialPlan(
 )  # fmt: skip
 """Plan of one baseline and three tows of an hour, three states each."""
 
-PLANS: Mapping[str, BlindTrialPlan] = {'full': FULL, 'day': DAY}
+PLANS: Mapping[str, BlindTrialPlan] = {'full': FULL_PLAN, 'day': DAY_PLAN}
 
 STATES = tuple(
     sorted({state for plan in PLANS.values() for tow in plan.tows for state in tow.states})

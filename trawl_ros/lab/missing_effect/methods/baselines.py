@@ -17,7 +17,7 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.diagnosis.holdout import holdout_comparison, predicted
 from trawl_ros.diagnosis.inference.blocks import blocks_of
 from trawl_ros.diagnosis.inference.candidates import signatures
-from trawl_ros.diagnosis.inference.decision import NamedCause, decide
+from trawl_ros.diagnosis.inference.decision import Decision, NamedCause, decide
 from trawl_ros.diagnosis.inference.marginal import Marginal
 from trawl_ros.diagnosis.inference.options import InferenceOptions
 from trawl_ros.diagnosis.inference.posterior import Explanation, Posterior, weighted
@@ -28,12 +28,7 @@ from trawl_ros.estimation.fit.error_terms import group_of
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.lab.missing_effect.methods.shared import (
-    Prepared,
-    answer,
-    coefficients,
-    held_out,
-)
+from trawl_ros.lab.missing_effect.methods.shared import Prepared, answer, with_repair
 from trawl_ros.lab.missing_effect.records import NOTHING, SOMETHING_ELSE, AnswerRecord
 from trawl_ros.records.channels import INPUTS
 
@@ -115,7 +110,9 @@ def bic(ready: Prepared, options: BaselineOptions) -> AnswerRecord:
         places = [own for place in key for own in _places(screen.suspects[place])]
         return found.chi2(places) - len(places) * float(readings)
 
-    gains = {(place,): first_order((place,)) for place in range(len(screen.suspects))}
+    gains: dict[tuple[int, ...], float] = {
+        (place,): first_order((place,)) for place in range(len(screen.suspects))
+    }
     (best,) = max(gains, key=lambda key: gains[key])
     name = screen.suspects[best].candidate.name
     for place, suspect in enumerate(screen.suspects):
@@ -128,27 +125,31 @@ def bic(ready: Prepared, options: BaselineOptions) -> AnswerRecord:
         if own is not None:
             delta = 2.0 * (ready.base.cost(screen.fit.scales) - own.cost(screen.fit.scales))
             gains[key] = delta - own.number * float(readings)
-    explanations = [
-        Explanation(
-            tuple(screen.suspects[place] for place in key), 0.5 * gain, 0.0, refits.get(key)
-        )
-        for key, gain in (((), 0.0), *gains.items())
-        if np.isfinite(gain)
-    ]
-    posterior = Posterior(weighted(explanations, 1.0))
-    decision = decide(posterior, InferenceOptions(cut=options.cut))
-    made = answer(posterior, decision.verdict, decision.named, decision.among, decision.best)
+    made, decision = _decided(
+        [
+            Explanation(
+                tuple(screen.suspects[own] for own in key), 0.5 * gain, 0.0, refits.get(key)
+            )
+            for key, gain in (((), 0.0), *gains.items())
+            if np.isfinite(gain)
+        ],
+        options,
+    )
     if decision.verdict != 'NAMED' or decision.best is None or decision.best.refit is None:
         return made
     repair = decision.best.refit
     predictor = ready_for(ready.predictor, [own.effect for own in repair.wanted])
     comparison = holdout_comparison(predictor, ready.base, repair, None, ready.halves.kept_back)
-    return made.model_copy(
-        update={
-            'held_out': held_out(comparison),
-            'coefficients': coefficients(ready.base, repair),
-        }
-    )
+    return with_repair(made, comparison, ready.base, repair)
+
+
+def _decided(
+    explanations: Sequence[Explanation], options: BaselineOptions
+) -> tuple[AnswerRecord, Decision]:
+    """Decide on weighted explanations by the same rule as the diagnosis."""
+    posterior = Posterior(weighted(explanations, 1.0))
+    made = decide(posterior, InferenceOptions(cut=options.cut))
+    return answer(posterior, made.verdict, made.named, made.among, made.best), made
 
 
 def _places(suspect: Suspect) -> list[int]:
@@ -176,10 +177,9 @@ def clean_regime(ready: Prepared, options: BaselineOptions) -> AnswerRecord:
     confirmed on the held-out windows.
     """
     in_baseline = [own for own in ready.halves.deciding if own.tow in ready.data.baseline]
-    clean = ready.base
-    if in_baseline:
-        fitted = fit_boards(ready.predictor, board_prior(ready.data.gear), in_baseline)
-        clean = fitted or clean
+    prior = board_prior(ready.data.gear)
+    fitted = fit_boards(ready.predictor, prior, in_baseline) if in_baseline else None
+    clean = fitted or ready.base
     examined = [own for own in ready.halves.deciding if own.tow not in ready.data.baseline]
     parts = [
         _whitened(ready, clean, windows)
@@ -193,17 +193,11 @@ def clean_regime(ready: Prepared, options: BaselineOptions) -> AnswerRecord:
         sum(_error(places, *pair) for pair in permutations(halves, 2))
         for places in ([], *map(_places, suspects))
     ]
-    weights = -0.5 * np.array(errors)
-    shares = np.exp(weights - logsumexp(weights))
-    posterior = Posterior(
-        tuple(sorted(
-            (
-                Explanation(own, 0.0, 0.0, None, None, float(share))
-                for own, share in zip(((), *((one,) for one in suspects)), shares, strict=True)
-            ),
-            key=lambda own: -own.probability,
-        ))
-    )  # fmt: skip
+    explanations = [
+        Explanation(own, 0.0, -0.5 * error)
+        for own, error in zip(((), *((one,) for one in suspects)), errors, strict=True)
+    ]
+    posterior = Posterior(weighted(explanations, 1.0))
     best = suspects[int(np.argmin(errors[1:]))]
     number, readings = len(_places(best)), len(tested[1])
     without, left = _error([], tested, tested), _error(_places(best), tested, tested)
@@ -275,14 +269,10 @@ def sparse_regression(ready: Prepared, options: BaselineOptions) -> AnswerRecord
         terms = _forward(Marginal(found.information, found.score + noise), cut, options.most_terms)
         sets[tuple(sorted({owner[free[term]].entry.name for term in terms}))] += 1
     explanations = [
-        Explanation(
-            tuple(by_name[name] for name in names), 0.0, 0.0, None, None, count / options.draws
-        )
-        for names, count in sets.most_common()
+        Explanation(tuple(by_name[name] for name in names), 0.0, float(np.log(count)))
+        for names, count in sets.items()
     ]
-    posterior = Posterior(tuple(explanations))
-    decision = decide(posterior, InferenceOptions(cut=options.cut))
-    return answer(posterior, decision.verdict, decision.named, decision.among)
+    return _decided(explanations, options)[0]
 
 
 def _forward(found: Marginal, cut: float, most: int) -> list[int]:

@@ -4,7 +4,7 @@
 
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.procedure import diagnose_windows
-from trawl_ros.lab.missing_effect.methods.shared import answer, coefficients, held_out
+from trawl_ros.lab.missing_effect.methods.shared import answer, with_repair
 from trawl_ros.lab.missing_effect.records import AnswerRecord
 from trawl_ros.lab.missing_effect.trials_folder import TrialInput
 
@@ -21,7 +21,6 @@ def answer_of(found: Diagnosis) -> AnswerRecord:
     # A frozen sensor is named without a place in the library: no trial hides one.
     verdict = 'UNKNOWN' if found.verdict == 'NAMED' and not found.named else found.verdict
     made = answer(found.posterior, verdict, found.named, found.among, found.best)
-    if found.repair is None:
+    if found.repair is None or found.repair.refit is None or found.base is None:
         return made
-    repair = coefficients(found.base, found.repair.refit)
-    return made.model_copy(update={'held_out': held_out(found.holdout), 'coefficients': repair})
+    return with_repair(made, found.holdout, found.base, found.repair.refit)

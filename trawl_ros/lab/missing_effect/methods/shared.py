@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.diagnosis import values_of
 from trawl_ros.diagnosis.holdout import HoldoutComparison, Split, split
 from trawl_ros.diagnosis.inference.candidates import lower_edges
@@ -128,25 +127,18 @@ def _sizes(best: Explanation) -> dict[str, SizeRecord]:
     return found
 
 
-def held_out(comparison: HoldoutComparison | None) -> HeldOutRecord | None:
-    """Return the errors on held-out windows; None without a repair."""
-    if comparison is None or comparison.after is None:
-        return None
-    parts = comparison.before.rms, comparison.after.rms, comparison.before.expected
-    before, after, expected = ({name: float(own) for name, own in part.items()} for part in parts)
-    return HeldOutRecord(before=before, after=after, expected=expected)
-
-
-def coefficients(base: Refit | None, repair: Refit | None) -> CoefficientsRecord | None:
-    """Return the board coefficients without and with the named causes; None without any."""
-    if base is None or repair is None:
-        return None
+def with_repair(
+    made: AnswerRecord, comparison: HoldoutComparison | None, base: Refit, repair: Refit
+) -> AnswerRecord:
+    """Return an answer with held-out errors and board coefficients, without and with a repair."""
     board = slice(0, len(COEFFICIENTS))
-    before, after = base.estimate.values[board], repair.estimate.values[board]
-    return CoefficientsRecord(
-        before=_plain(before), after=_plain(after), std=_plain(repair.estimate.std[board])
-    )
-
-
-def _plain(values: FloatArray) -> tuple[float, ...]:
-    return tuple(map(float, values))
+    boards = base.estimate.values, repair.estimate.values, repair.estimate.std
+    before, after, std = (tuple(map(float, own[board])) for own in boards)
+    update: dict[str, object] = {
+        'coefficients': CoefficientsRecord(before=before, after=after, std=std)
+    }
+    if comparison is not None and comparison.after is not None:
+        errors = comparison.before.rms, comparison.after.rms, comparison.before.expected
+        parts = [{name: float(own) for name, own in error.items()} for error in errors]
+        update['held_out'] = HeldOutRecord(before=parts[0], after=parts[1], expected=parts[2])
+    return made.model_copy(update=update)
