@@ -19,9 +19,7 @@ from trawl_ros.lab.missing_effect.records import AnswerRecord, HeldOutRecord
 from trawl_ros.lab.missing_effect.score_report import comparison_table, confusion_table
 from trawl_ros.lab.missing_effect.scoring import (
     all_sections,
-    excess_removed,
     is_right,
-    is_right_leaf,
     is_worse,
     is_wrong,
 )
@@ -64,7 +62,14 @@ def test_a_leaf_or_its_node_is_right_and_another_wrong(truth):
         )
     ]  # fmt: skip
     assert [is_right(own) for own in cases] == [True, True, False, False, False, False]
-    assert [is_right_leaf(own) for own in cases] == [True, False, False, False, False, False]
+    assert [is_right(own, by_leaf=True) for own in cases] == [
+        True,
+        False,
+        False,
+        False,
+        False,
+        False,
+    ]
     assert [is_wrong(own) for own in cases] == [False, False, False, True, True, False]
 
 
@@ -123,8 +128,6 @@ def test_a_repair_is_worse_only_beyond_the_errors_of_the_plant():
     )
     assert is_worse(own, {'door_spread': 1.0})
     assert not is_worse(own, {'door_spread': 2.8})
-    better = own.model_copy(update={'after': {'door_spread': 1.0}})
-    assert excess_removed(better) == 1.0
 
 
 def test_all_rows_are_made_of_few_answers_and_compared(truth):

@@ -12,9 +12,8 @@ from studies.kept import TrialTask
 from trawl_ros.core.resources import share_path
 from trawl_ros.diagnosis.inference.posterior import Posterior
 from trawl_ros.diagnosis.procedure import diagnose_windows
-from trawl_ros.lab.missing_effect.answering import timed
+from trawl_ros.lab.missing_effect.answering import answer_of, timed
 from trawl_ros.lab.missing_effect.calibration import Case
-from trawl_ros.lab.missing_effect.methods.diagnosis import answer_of
 from trawl_ros.lab.missing_effect.records import AnswerRecord, TruthRecord
 from trawl_ros.lab.missing_effect.trials_folder import truth_of
 from trawl_ros.lab.trials.making import gear_aboard, make

@@ -9,6 +9,8 @@ from typing import TypeVar
 
 from trawl_ros.core.files import made_folder, write_json
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.diagnosis.diagnosis import Diagnosis
+from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.lab.missing_effect.methods.baselines import (
     BaselineOptions,
     bic,
@@ -17,8 +19,7 @@ from trawl_ros.lab.missing_effect.methods.baselines import (
     largest_residual,
     sparse_regression,
 )
-from trawl_ros.lab.missing_effect.methods.diagnosis import trawl_diagnose
-from trawl_ros.lab.missing_effect.methods.shared import Prepared, prepare
+from trawl_ros.lab.missing_effect.methods.shared import Prepared, answer, prepare, with_repair
 from trawl_ros.lab.missing_effect.records import AnswerRecord, AnswersRecord
 from trawl_ros.lab.missing_effect.trials_folder import (
     TrialInput,
@@ -82,6 +83,23 @@ def answer_trials(
         for name in waiting:
             answers[name].trials[trial.name] = answer_trial(name, data, ready)
             write_json(files[name], answers[name].model_dump(mode='json', exclude_none=True))
+
+
+def trawl_diagnose(data: TrialInput) -> AnswerRecord:
+    """Diagnose a trial in the same way as `trawl diagnose`."""
+    return answer_of(diagnose_windows(data.gear, data.windows, data.tows, data.baseline))
+
+
+def answer_of(found: Diagnosis) -> AnswerRecord:
+    """Return a diagnosis as an answer."""
+    if found.posterior is None:
+        return AnswerRecord(verdict='NOT_TESTABLE')
+    # A frozen sensor is named without a place in the library: no trial hides one.
+    verdict = 'UNKNOWN' if found.verdict == 'NAMED' and not found.named else found.verdict
+    made = answer(found.posterior, verdict, found.named, found.among, found.best)
+    if found.repair is None or found.repair.refit is None or found.base is None:
+        return made
+    return with_repair(made, found.holdout, found.base, found.repair.refit)
 
 
 def answer_trial(name: str, data: TrialInput, ready: Prepared | None) -> AnswerRecord:

@@ -90,6 +90,10 @@ class CauseRecord(Record):
     nodes: tuple[str, ...]
     sizes: Numbers
 
+    def has_leaf(self, path: str) -> bool:
+        """Return True if a path is a right leaf."""
+        return path.rpartition('/')[2] in self.leaves
+
 
 class TruthRecord(Record):
     """Truth of a trial.
@@ -121,16 +125,10 @@ class TruthRecord(Record):
 
     def holds(self, path: str) -> bool:
         """Return True if a leaf or node holds one of the hidden causes."""
-        return any(is_leaf_of(path, cause) or _is_above(path, cause) for cause in self.causes)
-
-
-def is_leaf_of(path: str, cause: CauseRecord) -> bool:
-    """Return True if a path is a right leaf of a cause."""
-    return path.rpartition('/')[2] in cause.leaves
-
-
-def _is_above(path: str, cause: CauseRecord) -> bool:
-    return any(node == path or node.startswith(f'{path}/') for node in cause.nodes)
+        return any(
+            cause.has_leaf(path) or any(f'{node}/'.startswith(f'{path}/') for node in cause.nodes)
+            for cause in self.causes
+        )
 
 
 class KeyRecord(Record):

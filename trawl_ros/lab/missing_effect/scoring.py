@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from trawl_ros.diagnosis.holdout import HoldoutErrors
 from trawl_ros.diagnosis.inference.options import InferenceOptions
 from trawl_ros.lab.missing_effect.calibration import (
     CalibrationOptions,
@@ -23,9 +22,8 @@ from trawl_ros.lab.missing_effect.records import (
     AnswerRecord,
     CoefficientsRecord,
     HeldOutRecord,
-    is_leaf_of,
 )
-from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, between
+from trawl_ros.lab.report.measured import MeasuredValue, at_most, between
 from trawl_ros.lab.report.page import Section
 from trawl_ros.lab.report.rates import rate
 from trawl_ros.lab.trials.trial import Series
@@ -53,24 +51,14 @@ def is_wrong(case: Case) -> bool:
     return any(not truth.holds(path) for path in answer.named)
 
 
-def is_right(case: Case) -> bool:
+def is_right(case: Case, *, by_leaf: bool = False) -> bool:
     """Return True if all that is hidden is named, by its leaf or its node, and nothing else."""
     truth, answer = case
-    return (
-        not is_wrong(case)
-        and bool(answer.named)
-        and all(
-            any(path in cause.nodes or is_leaf_of(path, cause) for path in answer.named)
-            for cause in truth.causes
-        )
-    )
-
-
-def is_right_leaf(case: Case) -> bool:
-    """Return True if all that is hidden is named by its leaf."""
-    truth, answer = case
-    return is_right(case) and all(
-        any(is_leaf_of(path, cause) for path in answer.named) for cause in truth.causes
+    if is_wrong(case) or not answer.named:
+        return False
+    return all(
+        any(cause.has_leaf(path) or (path in cause.nodes and not by_leaf) for path in answer.named)
+        for cause in truth.causes
     )
 
 
@@ -95,14 +83,14 @@ def name_rows(cases: Sequence[Case]) -> list[MeasuredValue]:
         rows += [
             rate(f'right leaf, or node of one check, at {strength:g} times',
                  [is_right(case) for case in own], least=least),
-            rate(f'right leaf at {strength:g} times', [is_right_leaf(case) for case in own],
-                 least=least_leaf),
+            rate(f'right leaf at {strength:g} times',
+                 [is_right(case, by_leaf=True) for case in own], least=least_leaf),
         ]  # fmt: skip
     sizes = [len(answer.among) for _, answer in decided]
     return [
         *rows,
         rate('cause within the reported set',
-             [any(is_leaf_of(path, truth.causes[0]) for path in answer.among)
+             [any(truth.causes[0].has_leaf(path) for path in answer.among)
               for truth, answer in decided], least=97.0),
         MeasuredValue('median number of leaves in the set', _median(sizes), '', at_most(3.0)),
         rate('outside the library: UNKNOWN, or nothing above 0.5',
@@ -169,13 +157,11 @@ def size_rows(cases: Sequence[Case]) -> list[MeasuredValue]:
         for path, size in answer.sizes.items()
         if (leaf := path.rpartition('/')[2]) in truth.causes[0].sizes
     ]
-    right = [answer for truth, answer in cases if is_right((truth, answer))]
     errors = [
         coefficient_error(own, truth.coefficients)
         for truth, answer in cases
         if (own := answer.coefficients) is not None and is_right((truth, answer))
     ]
-    removed = [excess_removed(own.held_out) for own in right if own.held_out is not None]
     worse = [
         is_worse(answer.held_out, truth.floor)
         for truth, answer in cases
@@ -188,8 +174,6 @@ def size_rows(cases: Sequence[Case]) -> list[MeasuredValue]:
         rate('repairs that worsen a held-out channel more than the plant itself', worse, most=3.0),
         MeasuredValue('error of the coefficients, named rightly over not', _median(errors), '',
                       at_most(0.35)),
-        MeasuredValue('excess error on held-out tows that is removed', 100.0 * _median(
-                      [own for own in removed if own is not None]), '%', at_least(80.0)),
         MeasuredValue('processor time of a trial, median', _median(seconds), 's',
                       between(None, 30.0)),
     ]  # fmt: skip
@@ -202,13 +186,6 @@ def coefficient_error(own: CoefficientsRecord, truth: Sequence[float]) -> float:
         for values in (own.after, own.before)
     )
     return after / before
-
-
-def excess_removed(own: HeldOutRecord) -> float | None:
-    """Return the share of the excess error on held-out windows that a repair removes."""
-    before, after = (HoldoutErrors(rms, own.expected, 0) for rms in (own.before, own.after))
-    excess = before.excess(own.expected)
-    return 1.0 - after.excess(own.expected) / excess if excess > 0.0 else None
 
 
 def is_worse(own: HeldOutRecord, floor: dict[str, float]) -> bool:

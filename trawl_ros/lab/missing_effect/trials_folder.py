@@ -9,6 +9,8 @@ from hashlib import sha256
 from pathlib import Path
 from shutil import rmtree
 
+from pydantic import TypeAdapter
+
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder, made_folder, write_json, write_text, written_folder
 from trawl_ros.core.foreign import load_json, reading
@@ -19,7 +21,6 @@ from trawl_ros.diagnosis.library.entries import library
 from trawl_ros.diagnosis.repair import gear_text
 from trawl_ros.estimation.bag_windows import BagTask, read_tow
 from trawl_ros.estimation.tows import numbered
-from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
@@ -227,11 +228,7 @@ def read_windows(path: Path) -> tuple[SteadyWindow, ...]:
     """Read steady windows from a JSON file."""
     records = load_json(path, TrawlError)
     with reading(path, TrawlError):
-        assert isinstance(records, list)
-        return tuple(
-            SteadyWindow(**{**record, 'track': GroundTrack(**record['track'])})
-            for record in records
-        )
+        return TypeAdapter(tuple[SteadyWindow, ...]).validate_python(records)
 
 
 def read_bags(bags: Sequence[Path], gear: GearRecord) -> tuple[SteadyWindow, ...]:
