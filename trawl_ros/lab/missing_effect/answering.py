@@ -11,7 +11,7 @@ from trawl_ros.core.files import made_folder, write_json
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.diagnosis.diagnosis import Diagnosis
 from trawl_ros.diagnosis.procedure import diagnose_windows
-from trawl_ros.lab.missing_effect.methods.baselines import (
+from trawl_ros.lab.missing_effect.baselines import (
     BaselineOptions,
     bic,
     clean_regime,
@@ -19,7 +19,7 @@ from trawl_ros.lab.missing_effect.methods.baselines import (
     largest_residual,
     sparse_regression,
 )
-from trawl_ros.lab.missing_effect.methods.shared import Prepared, answer, prepare, with_repair
+from trawl_ros.lab.missing_effect.prepared import Prepared, answer, prepare, with_repair
 from trawl_ros.lab.missing_effect.records import AnswerRecord, AnswersRecord
 from trawl_ros.lab.missing_effect.trials_folder import (
     TrialInput,

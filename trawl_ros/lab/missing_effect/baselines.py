@@ -28,7 +28,7 @@ from trawl_ros.estimation.fit.error_terms import group_of
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.lab.missing_effect.methods.shared import Prepared, answer, with_repair
+from trawl_ros.lab.missing_effect.prepared import Prepared, answer, with_repair
 from trawl_ros.lab.missing_effect.records import NOTHING, SOMETHING_ELSE, AnswerRecord
 from trawl_ros.records.channels import INPUTS
 
