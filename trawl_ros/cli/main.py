@@ -38,6 +38,10 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
             'Measure run times and compare them with other tools.',
         ),
         'bench': ('lab.commands.bench', 'Compare autotrawls in the same scenarios.'),
+        'missing-effect': (
+            'lab.commands.missing_effect',
+            'Make blind trials of a missing effect, answer them, and score answers.',
+        ),
         'scenarios': ('cli.scenarios', 'List the scenarios of the package.'),
         'files': ('cli.files', 'Print or copy the files of the package: gears, scenarios, bag.'),
         'import-log': ('cli.import_log', 'Convert a log from sea, a table or NMEA 0183, to a bag.'),

@@ -26,8 +26,9 @@ EVERY = 3
 
 @dataclass(frozen=True)
 class Split:
-    """Split: windows that decide, and those kept back; ``by`` says what was kept back: tows, or
-    steady states of tows that also decide.
+    """Split into windows that decide and windows that are held out.
+
+    ``by`` says what is held out: tows, or steady states of tows that also decide.
     """
 
     deciding: tuple[SteadyWindow, ...]
@@ -63,9 +64,7 @@ def split(windows: Sequence[SteadyWindow], baseline: frozenset[int]) -> Split:
 
 @dataclass(frozen=True)
 class HoldoutErrors:
-    """Root mean square errors by channel, in its unit, and ``expected``, those that the
-    known errors would make.
-    """
+    """Root mean square errors by channel, in its unit, and those expected from known errors."""
 
     rms: Mapping[str, float]
     expected: Mapping[str, float]
@@ -81,8 +80,9 @@ class HoldoutErrors:
 
 @dataclass(frozen=True)
 class HoldoutComparison:
-    """Hold-out comparison: errors without, with the effect, and with the best wrong one
-    (``placebo``, whose name is ``instead``).
+    """Errors on held-out windows without and with the effect, and with the best wrong one.
+
+    The wrong one is the ``placebo``; ``instead`` is its name.
     """
 
     before: HoldoutErrors

@@ -16,9 +16,9 @@ from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
-UNIT = 'wrong unit'
-JUDGED = 5
-"""So many steady states are asked for their units: all of a tow have the same."""
+WRONG_UNIT = 'wrong unit'
+STATES_ASKED = 5
+"""Number of steady states that are checked for wrong units; all of a tow have the same."""
 
 FROZEN_STATES, FROZEN_LENGTHS, FROZEN_NOISE = 3, 1.5, 4.0
 """A sensor is frozen that shows the same in at least so many states of a tow, between which the
@@ -35,9 +35,9 @@ def wrong_unit(
 ) -> str | None:
     """Sentence on a channel that reports in another unit; None where none is found."""
     screening = Screening(predictor, prior, OBSERVABLES)
-    for window in windows[:: max(1, len(windows) // JUDGED)]:
+    for window in windows[:: max(1, len(windows) // STATES_ASKED)]:
         rejected = screening.judge(window, prior.start).found
-        if rejected is not None and rejected.reason == UNIT:
+        if rejected is not None and rejected.reason == WRONG_UNIT:
             return rejected.detail
     return None
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.diagnosis.inference.marginal import BLIND
+from trawl_ros.diagnosis.inference.marginal import MIN_INFORMATION
 from trawl_ros.diagnosis.inference.patterns import SHAPES, ResidualPattern
 from trawl_ros.diagnosis.inference.screen import Screen
 
-TELLING = 3.0
-"""Standard deviations from where a pattern is worth a word."""
+SIGNIFICANT_Z = 3.0
+"""Standard deviations from which a pattern is significant."""
 
 DIRECTIONS = {
     'throughout': ('too large throughout', 'too small throughout'),
@@ -22,8 +22,9 @@ DIRECTIONS = {
 
 @dataclass(frozen=True)
 class Where:
-    """Residuals of a channel that follow a variable: ``z`` is how far, in standard deviations of
-    what errors would make; ``region`` says it in words.
+    """Residuals of a channel that follow a variable.
+
+    ``z`` is their size in standard deviations of the errors; ``region`` describes it in words.
     """
 
     channel: str
@@ -37,16 +38,16 @@ def located(test: Screen) -> tuple[Where, ...]:
     places = []
     for place, pattern in enumerate(test.patterns, test.number):
         information = float(test.marginal.information[place, place])
-        if information <= BLIND:
+        if information <= MIN_INFORMATION:
             continue
         z = float(test.marginal.score[place]) / float(np.sqrt(information))
         places.append(Where(pattern.channel, pattern.shape, _region(test, pattern, z), z))
     return tuple(sorted(places, key=lambda where: -abs(where.z)))
 
 
-def telling(test: Screen) -> tuple[Where, ...]:
+def significant_patterns(test: Screen) -> tuple[Where, ...]:
     """Significant patterns."""
-    return tuple(where for where in located(test) if abs(where.z) >= TELLING)
+    return tuple(where for where in located(test) if abs(where.z) >= SIGNIFICANT_Z)
 
 
 def map_of(test: Screen) -> tuple[list[str], list[str], FloatArray]:

@@ -21,20 +21,20 @@ from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
-STATES = 3
-"""Steady states of a tow that is proposed."""
+STATES_PER_TOW = 3
+"""Number of steady states of a proposed tow."""
 
 STATE_MINUTES = 20.0
-"""A state takes so long, with what the gear takes to settle."""
+"""Duration of a state, settling of the gear included."""
 
-TELLING = 10.0
+DECISIVE_CHI2 = 10.0
 """χ² by which one cause must be better than another to exclude it (odds of 150)."""
 
-WORTH = 1.0
-"""Tows of less χ² per hour are not proposed: no weather makes them tell."""
+MIN_CHI2_PER_HOUR = 1.0
+"""Tows that gain less χ² per hour are not proposed."""
 
-TOLD = 3
-"""So many tows are proposed."""
+MAX_PROPOSALS = 3
+"""Largest number of proposed tows."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +71,10 @@ class Proposal:
             f'{lengths[0]:.0f} m of warp'
         )
         track = ', on the reciprocal track' if self.reciprocal else ''
-        helps = 'should separate' if self.per_hour >= TELLING else 'helps to separate'
+        verb = 'separates' if self.per_hour >= DECISIVE_CHI2 else 'helps to separate'
         return (
-            f'Tow {what}{track}: an hour of it {helps} the best effect from its nearest rival '
-            f'(χ² {self.per_hour:.1f} more, where {TELLING:g} are enough; so far '
+            f'Tow {what}{track}: an hour of it {verb} the best effect from its nearest rival '
+            f'(χ² {self.per_hour:.1f} more, where {DECISIVE_CHI2:g} are enough; so far '
             f'{self.before:.1f}).'
         )
 
@@ -139,7 +139,9 @@ def propose(
             after = apart(windows, signatures(ready, windows, wanted))
             proposals.append(Proposal(states, reciprocal, before, after))
     ranked = sorted(proposals, key=lambda proposal: -proposal.per_hour)
-    return tuple(proposal for proposal in ranked[:TOLD] if proposal.per_hour > WORTH)
+    return tuple(
+        proposal for proposal in ranked[:MAX_PROPOSALS] if proposal.per_hour > MIN_CHI2_PER_HOUR
+    )
 
 
 def _apart(found: Marginal, scaled: FloatArray, rivals: Sequence[Suspect]) -> float:
@@ -163,7 +165,9 @@ def _places(screen: Screen) -> list[tuple[float, float, int]]:
 def _tows(screen: Screen) -> list[tuple[tuple[float, float], ...]]:
     """Tows of speed steps at both ends of the warp's range, and warp steps at both speeds'."""
     lengths, speeds, _ = (np.array(column) for column in zip(*_places(screen), strict=True))
-    steps = [np.linspace(values.min(), values.max(), STATES) for values in (lengths, speeds)]
+    steps = [
+        np.linspace(values.min(), values.max(), STATES_PER_TOW) for values in (lengths, speeds)
+    ]
     tows = [tuple((float(end), float(u)) for u in steps[1]) for end in steps[0][[0, -1]]]
     tows += [tuple((float(w), float(end)) for w in steps[0]) for end in steps[1][[0, -1]]]
     return tows

@@ -131,8 +131,9 @@ def _held(refit: Refit, windows: Sequence[Linearised]) -> Fit:
 
 
 def _covariance(fit: Fit, estimate: FloatArray, errors: ErrorSize) -> FloatArray:
-    """Covariance of all residuals (windows k, windows k) of predictions with an estimate of this
-    covariance.
+    """Return the covariance (windows k, windows k) of the residuals of predictions.
+
+    ``estimate`` is the covariance of the estimate that predicts.
     """
     windows, channels = fit.residual.shape
     number = windows * channels

@@ -27,7 +27,7 @@ from trawl_ros.diagnosis.instruments import (
     wrong_unit,
 )
 from trawl_ros.diagnosis.library.entries import library
-from trawl_ros.diagnosis.locating import telling
+from trawl_ros.diagnosis.locating import significant_patterns
 from trawl_ros.diagnosis.next_tow import Proposal, propose
 from trawl_ros.diagnosis.predictive_check import on_holdout
 from trawl_ros.effects.effect_set import effects_of
@@ -39,15 +39,15 @@ from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.predict import Predictor
 
-FEWEST_STATES = 3
-"""Number of steady states below which nothing can be tested."""
+MIN_STATES = 3
+"""Smallest number of steady states that can be tested."""
 
-NOWHERE_NEAR, NEAR = 10.0, 3.0
-"""Noise found over noise stated, boards alone, from which it is another gear, unless a cause brings
-it below the second."""
+OTHER_GEAR_NOISE, EXPLAINED_NOISE = 10.0, 3.0
+"""Estimated over stated noise from which it is another gear, unless a cause brings it below the
+second."""
 
-RIVALS = 4
-"""Largest number of causes from which the next tow separates the likeliest."""
+MAX_RIVALS = 4
+"""Largest number of causes that the next tow distinguishes from the likeliest."""
 
 
 def diagnose_windows(
@@ -94,11 +94,12 @@ def diagnose_windows(
         'NOT_TESTABLE', '', gear, tuple(tows), baseline, halves, remarks=remarks, frozen=stuck
     )
     examined = {window.state for window in windows if window.tow not in baseline}
-    if len(examined) < FEWEST_STATES:
+    if len(examined) < MIN_STATES:
         return replace(
             known,
             reason=f'found {len(examined)} steady states to examine, expected at least '
-            f'{FEWEST_STATES}: what does not vary cannot be separated from the boards',
+            f'{MIN_STATES}: without variation no cause can be distinguished from the '
+            'boards',
         )
     on_progress(_step('fitting the boards'))
     prior = board_prior(gear)
@@ -126,7 +127,7 @@ def diagnose_windows(
         screen=seen,
         posterior=posterior,
         moved=_moved(predictor, base),
-        where=telling(seen),
+        where=significant_patterns(seen),
     )
     decision = decide(posterior, options)
     if decision.verdict == 'NO_DISCREPANCY':
@@ -136,8 +137,14 @@ def diagnose_windows(
     # Noise is found by the fits, so that a misfit shows in it.
     noise, *others = (float(np.median(own.fit.scales)) for own in _refits(base, posterior))
     best = decision.best
-    near = min(others, default=noise) < NEAR and best is not None and len(best.suspects) == 1
-    if noise > NOWHERE_NEAR and not (near or was_in_order(predictor, prior, deciding, baseline)):
+    near = (
+        min(others, default=noise) < EXPLAINED_NOISE
+        and best is not None
+        and len(best.suspects) == 1
+    )
+    if noise > OTHER_GEAR_NOISE and not (
+        near or was_in_order(predictor, prior, deciding, baseline)
+    ):
         return replace(
             known,
             reason=wrong_unit(predictor, prior, deciding)
@@ -214,7 +221,7 @@ def _advice(
     decision: Decision,
     on_progress: OnProgress,
 ) -> tuple[tuple[str, ...], tuple[Proposal, ...]]:
-    """Return checks on deck and tows that tell the likeliest cause from those not excluded."""
+    """Return checks on deck and tows that distinguish the likeliest cause from the others."""
     best = decision.best
     if best is None or best.refit is None or decision.verdict != 'AMBIGUOUS':
         return (), ()
@@ -222,7 +229,7 @@ def _advice(
     suspects = [posterior.entry(name) for name in leaves]
     checks = tuple(dict.fromkeys(suspect.entry.check for suspect in suspects))
     first = best.suspects[0]
-    rivals = [own for own in suspects if own.entry.name not in best.names][:RIVALS]
+    rivals = [own for own in suspects if own.entry.name not in best.names][:MAX_RIVALS]
     values = best.refit.values[: len(first.block)]
     on_progress(_step('looking for the next tow'))
     try:

@@ -17,8 +17,8 @@ from trawl_ros.diagnosis.library.gear_file_change import GearFileChange, changed
 from trawl_ros.gear.boards import CoefficientsRecord
 from trawl_ros.gear.records import EffectRecord, GearRecord, ProvenanceRecord, SourceRecord
 
-RECORDINGS = ('.mcap', '.db3', '.csv')
-PIECE = 1 << 20
+RECORDING_SUFFIXES = ('.mcap', '.db3', '.csv')
+READ_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -32,12 +32,12 @@ class SourceBag:
 def source(bag: Path) -> SourceBag:
     """Identify a bag by the SHA-256 of its recordings, in the order of their names."""
     files = sorted(bag.rglob('*')) if bag.is_dir() else [bag]
-    recordings = [file for file in files if file.suffix in RECORDINGS and file.is_file()]
+    recordings = [file for file in files if file.suffix in RECORDING_SUFFIXES and file.is_file()]
     digests = []
     for file in recordings:
         digest = sha256()
         with file.open('rb') as stream:
-            while piece := stream.read(PIECE):
+            while piece := stream.read(READ_BYTES):
                 digest.update(piece)
         digests.append(digest.hexdigest())
     return SourceBag(bag.name, ' '.join(digests) or 'no recordings')

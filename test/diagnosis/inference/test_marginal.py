@@ -6,6 +6,7 @@ from scipy.stats import multivariate_normal
 
 from trawl_ros.diagnosis.inference.blocks import Blocks
 from trawl_ros.diagnosis.inference.marginal import marginal
+from trawl_ros.diagnosis.inference.options import InferenceOptions
 from trawl_ros.diagnosis.inference.unknown import unknown
 from trawl_ros.diagnosis.inference.variants import Chosen, log_factor
 
@@ -71,10 +72,10 @@ def test_a_prior_that_ends_at_nothing_counts_what_lies_beyond(made):
 
 def test_something_else_is_found_by_its_patterns(made):
     found, *_ = made
-    quiet = unknown(type(found)(found.information, np.zeros(VALUES)))
+    quiet = unknown(type(found)(found.information, np.zeros(VALUES)), InferenceOptions())
     assert quiet.log_factor < 0.0
     size = np.zeros(VALUES)
     size[2] = 20.0
-    loud = unknown(type(found)(found.information, found.information @ size))
+    loud = unknown(type(found)(found.information, found.information @ size), InferenceOptions())
     assert loud.log_factor > 5.0
     assert loud.places[0] == 2

@@ -1,12 +1,9 @@
 """Right answers of blind trials are leaves of the library at nodes of one check each."""
 
-import pytest
-
 from trawl_ros.diagnosis.library.entries import library
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.trials.answers import (
     NOT_IN_LIBRARY,
-    holds,
     right_leaves,
     right_nodes,
 )
@@ -23,19 +20,3 @@ def test_each_hidden_cause_has_leaves_of_the_library_or_is_outside():
         # A gear without floats has no buoyancy in its file.
         assert not right or set(right) & leaves, cause
         assert bool(right_nodes(cause)) == bool(right)
-
-
-@pytest.mark.parametrize(
-    ('named', 'right'),
-    [
-        ('mouth/weight/footrope_weight', True),
-        ('mouth/weight', True),
-        ('mouth', True),
-        ('mouth/weight/port_clump', False),
-        ('mouth/lift', False),
-        ('boards/rigging/board_rigging', False),
-    ],
-)
-def test_a_name_is_right_that_holds_the_cause(named, right):
-    assert holds(named, ('footrope_chain',)) == right
-    assert not holds(named, ())

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from trawl_ros.effects.base.effect import Situation
-from trawl_ros.lab.trials.diagnosing import _of_bags
+from trawl_ros.lab.missing_effect.trials_folder import read_bags
 from trawl_ros.lab.trials.hidden_effects.inside import INSIDE
 from trawl_ros.lab.trials.making import make
-from trawl_ros.lab.trials.plant import FINER, draw_plant
+from trawl_ros.lab.trials.plant import FINER_MESH, draw_plant
 from trawl_ros.lab.trials.readings import AS_STATED
 from trawl_ros.lab.trials.recording import record_tows
 from trawl_ros.lab.trials.towing import (
@@ -18,7 +18,7 @@ from trawl_ros.lab.trials.towing import (
     settling_time,
     towed_in_time,
 )
-from trawl_ros.lab.trials.tows import FULL, PlannedTow
+from trawl_ros.lab.trials.tows import FULL_PLAN, PlannedTow
 from trawl_ros.lab.trials.trial import Spec
 from trawl_ros.records.channels import MEASURED
 from trawl_ros.records.observables import OBSERVABLES
@@ -28,19 +28,19 @@ GEAR, SEED = 'kaifuha', 5
 
 @pytest.fixture(scope='module')
 def plant():
-    return draw_plant(GEAR, FINER, SEED, 0)
+    return draw_plant(GEAR, FINER_MESH, SEED, 0)
 
 
 @pytest.fixture(scope='module')
 def poor():
     spec = Spec('poor', 1, ('counter_offset',), 2.0, (1.0,), 0, 'poor')
-    key, made = make(spec, GEAR, FINER, SEED)
+    key, made = make(spec, GEAR, FINER_MESH, SEED)
     assert key.testable, key.why_not
     return spec, made
 
 
 def test_states_follow_each_other_and_are_held_until_they_are_steady(plant):
-    tow, looks = FULL.tows[1], plant.towed((), FULL)[1]
+    tow, looks = FULL_PLAN.tows[1], plant.towed((), FULL_PLAN)[1]
     course = quasi_steady(tow, looks)
     assert np.all(np.diff(course.times) > 0.0)
     assert course.heading == pytest.approx(np.pi)
@@ -53,12 +53,12 @@ def test_states_follow_each_other_and_are_held_until_they_are_steady(plant):
 
 @pytest.mark.slow
 def test_what_is_found_in_a_bag_is_what_was_towed(plant, tmp_path):
-    looks = plant.towed((), FULL)[:2]
-    courses = [quasi_steady(tow, own) for tow, own in zip(FULL.tows, looks, strict=False)]
+    looks = plant.towed((), FULL_PLAN)[:2]
+    courses = [quasi_steady(tow, own) for tow, own in zip(FULL_PLAN.tows, looks, strict=False)]
     rng = np.random.default_rng(1)
     record_tows(tmp_path / 'bags', courses, plant.model.water, AS_STATED, 0.0, rng)
-    windows, names = _of_bags(tmp_path / 'bags', FINER.model(GEAR))
-    assert len(names) == 2
+    windows = read_bags(sorted((tmp_path / 'bags').iterdir()), FINER_MESH.model(GEAR))
+    assert {window.tow for window in windows} == {0, 1}
     found = set()
     for window in windows:
         # As at sea, the noise of the log hides that some states are steady.
@@ -72,16 +72,16 @@ def test_what_is_found_in_a_bag_is_what_was_towed(plant, tmp_path):
         for name in MEASURED:
             error = window.means[name] - look[name]
             assert abs(error) < 6.0 * window.std(name), name
-        assert window.sense == (1.0 if FULL.tows[window.tow].eastward else -1.0)
+        assert window.sense == (1.0 if FULL_PLAN.tows[window.tow].eastward else -1.0)
     assert len(found) >= 7
 
 
 @pytest.mark.slow
 def test_channels_that_need_not_be_there_fall_silent(plant, tmp_path):
-    courses = [quasi_steady(FULL.tows[0], plant.towed((), FULL)[0])]
+    courses = [quasi_steady(FULL_PLAN.tows[0], plant.towed((), FULL_PLAN)[0])]
     rng = np.random.default_rng(2)
     record_tows(tmp_path / 'bags', courses, plant.model.water, AS_STATED, 1.0, rng)
-    windows, _ = _of_bags(tmp_path / 'bags', FINER.model(GEAR))
+    windows = read_bags([tmp_path / 'bags' / 'tow_01'], FINER_MESH.model(GEAR))
     assert windows
     assert all('port_pitch' not in window.means for window in windows)
     assert all('net_depth' in window.means for window in windows)
@@ -97,7 +97,7 @@ def test_towed_in_time_the_plant_comes_to_rest_where_its_steady_states_are(plant
     course = towed_in_time(plant.model, tow, effects)
     inputs, values = course.at(np.array(course.moments))
     np.testing.assert_allclose(inputs[0], (300.0, 300.0, 2.4), rtol=1e-6)
-    steady = plant.towed(effects, replace(FULL, tows=(tow,), baseline=0))[0][0]
+    steady = plant.towed(effects, replace(FULL_PLAN, tows=(tow,), baseline=0))[0][0]
     rows = [OBSERVABLES.index(name) for name in MEASURED]
     np.testing.assert_allclose(values[0][rows], steady.values[rows], rtol=0.01, atol=0.01)
 

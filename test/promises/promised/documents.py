@@ -11,6 +11,8 @@ from markdown_it.token import Token
 
 ROOT = Path(__file__).parents[3]
 TABLE = ROOT / 'docs/promises.md'
+MAKES = r'(?:--out |--target |>> ?|> |output:=|missing-effect make )(\S+)'
+"""What stands before the name of a file or folder that a command makes."""
 
 
 @dataclass(frozen=True)
@@ -46,9 +48,7 @@ class Promise:
     def makes(self) -> set[str]:
         """Files and folders that it leaves, by their names in the command."""
         copies = re.findall(r'^cp (?:-r )?\S+ (\S+)$', self.title)
-        return set(re.findall(r'(?:--out |--target |>> ?|> |output:=)(\S+)', self.title)) | set(
-            copies
-        )
+        return set(re.findall(MAKES, self.title)) | set(copies)
 
     @property
     def names(self) -> set[str]:

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from studies.coverage.trial import EstimationTrial
-from studies.rates import AGAIN, figure_row, interval, rate
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.lab.report.measured import MeasuredValue, at_most, between
+from trawl_ros.lab.report.rates import AGAIN, figure_row, interval, rate
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 COVERAGE = (90.0, 98.0)

@@ -16,8 +16,8 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.trials.linearised_plant import LinearisedState
 from trawl_ros.lab.trials.readings import (
     AS_STATED,
-    KINDS,
-    SENSED,
+    SENSED_CHANNELS,
+    SENSOR_KINDS,
     Sensors,
     steady_windows,
     wrong_by,
@@ -96,7 +96,7 @@ def test_a_state_that_the_model_lacks_is_counted_and_left_out():
 
 def looks(number=3):
     rng = np.random.default_rng(9)
-    size = {name: CHANNELS[name].noise for name in SENSED}
+    size = {name: CHANNELS[name].noise for name in SENSED_CHANNELS}
     scale = np.array([size.get(name, 1.0) for name in OBSERVABLES])[:, None]
     return [
         LinearisedState(
@@ -116,7 +116,7 @@ def test_simulated_windows_have_the_covariance_that_the_bound_assumes():
     rest = []
     for window, look in zip(windows, seen * 800, strict=True):
         wrong = np.array([window.means[name] for name in INPUTS]) - look.inputs
-        measured = np.array([window.means[name] for name in SENSED])
+        measured = np.array([window.means[name] for name in SENSED_CHANNELS])
         rest.append(measured - look.values[ROWS] - look.by_inputs[ROWS] @ wrong)
     found = np.cov(np.reshape(rest, (800, -1)).T)
     expected = _covariance(seen, sensors)
@@ -137,8 +137,8 @@ def test_biases_of_a_tow_are_not_worn_down_by_more_windows():
 
 def test_noise_is_as_much_larger_than_stated_as_asked():
     sensors = wrong_by(0.3, np.random.default_rng(5))
-    assert {sensors.factor(name) for name in (*SENSED, *INPUTS)} <= {0.7, 1.3}
-    loud = Sensors(dict.fromkeys(KINDS, 3.0))
+    assert {sensors.factor(name) for name in (*SENSED_CHANNELS, *INPUTS)} <= {0.7, 1.3}
+    loud = Sensors(dict.fromkeys(SENSOR_KINDS, 3.0))
     quiet, noisy = (
         [window.means['port_door_depth'] for window in
          steady_windows([looks(1)] * 400, case, np.random.default_rng(6))]

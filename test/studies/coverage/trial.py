@@ -22,7 +22,7 @@ from trawl_ros.lab.trials.linearised_plant import (
 )
 from trawl_ros.lab.trials.readings import (
     SAME_IN_ALL_STATES,
-    SENSED,
+    SENSED_CHANNELS,
     Sensors,
     steady_windows,
     wrong_by,
@@ -33,7 +33,7 @@ from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 from trawl_ros.solver.trimming.drawn_board import fastened_as
 
-ROWS = [OBSERVABLES.index(name) for name in SENSED]
+ROWS = [OBSERVABLES.index(name) for name in SENSED_CHANNELS]
 
 
 def information(tows: Sequence[Sequence[LinearisedState]], sensors: Sensors) -> FloatArray:
@@ -69,12 +69,12 @@ def _covariance(looks: Sequence[LinearisedState], sensors: Sensors) -> FloatArra
                     for name in names
                 ]
             )
-            for names in (SENSED, INPUTS)
+            for names in (SENSED_CHANNELS, INPUTS)
         )
         sensitivity = look.by_inputs[ROWS]
         blocks.append(own + sensitivity @ inputs @ sensitivity.T)
     columns = []
-    for name in (*SENSED, *INPUTS):
+    for name in (*SENSED_CHANNELS, *INPUTS):
         channel, factor = CHANNELS[name], sensors.factor(name)
         offset = np.concatenate([_effect(look, name) for look in looks])
         scale = np.concatenate([_effect(look, name) * _size(look, name) for look in looks])
@@ -88,7 +88,7 @@ def _effect(look: LinearisedState, name: str) -> FloatArray:
     """Sensitivity (k,) of the residuals to an offset of a channel or input."""
     if name in INPUTS:
         return -look.by_inputs[ROWS, INPUTS.index(name)]
-    return np.array([float(name == other) for other in SENSED])
+    return np.array([float(name == other) for other in SENSED_CHANNELS])
 
 
 def _size(look: LinearisedState, name: str) -> float:

@@ -33,7 +33,7 @@ from trawl_ros.estimation.windows.records import Rejections, SteadyWindow
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.trials.linearised_plant import State
-from trawl_ros.lab.trials.strength import AS_KNOWN, SIGMAS
+from trawl_ros.lab.trials.strength import DETECTED_SIGMAS, ERRORS_AS_STATED
 from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample
 from trawl_ros.report.rendering import number as in_digits
@@ -170,7 +170,7 @@ def run_detectable(task: MotionTask) -> DetectableSizes:
     )
     columns = signatures(predictor, base.fit.windows, wanted)
     units = np.concatenate([candidate.scale for candidate in wanted])
-    still = marginal(blocks_of(base.fit, [own * units for own in columns], errors=AS_KNOWN))
+    still = marginal(blocks_of(base.fit, [own * units for own in columns], errors=ERRORS_AS_STATED))
     coefficients = base.fit.coefficients[: len(prior)]
     gear = ExaminedGear(predictor.model, predictor.fixed, coefficients, prior, wanted)
     moving = information_in_motion(gear, read.moving)
@@ -182,9 +182,9 @@ def run_detectable(task: MotionTask) -> DetectableSizes:
         effects=[one.name for one in wanted for _ in one.effect.parameters],
         values=[own.name for own in parameters],
         units=[own.unit for own in parameters],
-        windows=_numbers(gear.units * SIGMAS * still.std(range(number))),
-        motion=_numbers(gear.units * SIGMAS * moving.evidence.std(range(number))),
-        added_mass=_numbers(ADDED_MASS_STD * SIGMAS * moving.added_mass.std(range(1)))[0],
+        windows=_numbers(gear.units * DETECTED_SIGMAS * still.std(range(number))),
+        motion=_numbers(gear.units * DETECTED_SIGMAS * moving.evidence.std(range(number))),
+        added_mass=_numbers(ADDED_MASS_STD * DETECTED_SIGMAS * moving.added_mass.std(range(1)))[0],
         number_of_windows=len(read.windows),
         counted_s=moving.counted_s,
         cpu_s=time.process_time() - begun,

@@ -7,10 +7,10 @@ from scipy.special import chdtri
 from scipy.stats import binomtest
 
 from studies.motion.trial import MotionTrial
-from studies.rates import AGAIN, figure_row
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.lab.report.measured import MeasuredValue, at_most, between
+from trawl_ros.lab.report.rates import AGAIN, figure_row
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 COVERAGE = (92.0, 98.0)

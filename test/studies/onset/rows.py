@@ -8,11 +8,11 @@ import numpy as np
 from scipy.stats import chi2
 
 from studies.onset.trial import BEHIND_MIN, OnsetTrial
-from studies.rates import AGAIN, figure_row, rate
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.onset.monitor import OnsetOptions
 from trawl_ros.lab.report.measured import MeasuredValue, TargetRange, at_most
 from trawl_ros.lab.report.page import TextTable
+from trawl_ros.lab.report.rates import AGAIN, figure_row, rate
 
 NEAR_S = 180.0
 """An onset is right that is told within so much."""

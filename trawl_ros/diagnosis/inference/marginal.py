@@ -20,7 +20,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.inference.blocks import Blocks
 
-BLIND = 1e-9
+MIN_INFORMATION = 1e-9
 """Information below this part of what a value has without boards is none."""
 
 
@@ -101,13 +101,13 @@ class Marginal:
         """Return std of values, each alone; infinite where they are unobservable."""
         diagonal = np.diag(self.information)[list(places)]
         with np.errstate(divide='ignore'):
-            return 1.0 / np.sqrt(np.where(diagonal > BLIND, diagonal, 0.0))
+            return 1.0 / np.sqrt(np.where(diagonal > MIN_INFORMATION, diagonal, 0.0))
 
     def covered(self, places: Sequence[int], values: FloatArray, other: Sequence[int]) -> float:
         """Return the cosine of the values' signature with the nearest of other values'."""
         rows, columns = list(places), list(other)
         size = float(values @ self.of(rows).information @ values)
-        if size <= BLIND:
+        if size <= MIN_INFORMATION:
             return 0.0
         shared = self.information[np.ix_(columns, rows)] @ values
         inverse = self._inverse(columns)

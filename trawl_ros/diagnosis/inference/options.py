@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers of the inference, fitted on trials of development seeds and frozen before scoring."""
+"""Options of the inference, fitted on trials of development seeds and frozen before scoring."""
 
 from dataclasses import dataclass, field
 
@@ -18,7 +18,7 @@ class InferenceOptions:
     cut
         Probability from which a leaf or a node is named; certified by the study.
     errors
-        Size of errors that readings do not tell.
+        Size of errors that readings do not show.
     unknown_rate
         Prior probability of something that the library does not have.
     tail
@@ -32,6 +32,14 @@ class InferenceOptions:
         Number of the likeliest hypotheses to which every other one is added.
     largest_set
         Largest number of causes at once.
+    pattern_sizes
+        Std of the size of a pattern of something else, in std of a reading, equally likely.
+    most_patterns
+        Largest number of such patterns.
+    sets_with_unknown
+        Number of the likeliest refitted sets beside which something else is considered.
+    power_quantile
+        Normal quantile of the power, 80 %, of detectable sizes.
     """
 
     temperature: float = 1.5
@@ -43,3 +51,7 @@ class InferenceOptions:
     refits: int = 8
     grown: int = 6
     largest_set: int = 3
+    pattern_sizes: tuple[float, ...] = (2.0, 8.0)
+    most_patterns: int = 25
+    sets_with_unknown: int = 3
+    power_quantile: float = 0.84

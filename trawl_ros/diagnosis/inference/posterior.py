@@ -23,9 +23,6 @@ from trawl_ros.solver.predict import Predictor
 Key = tuple[int, ...]
 """Places of suspects, rising."""
 
-WITH_UNKNOWN = 3
-"""Number of the likeliest refitted sets with which H? is looked for."""
-
 
 @dataclass(frozen=True)
 class Explanation:
@@ -267,14 +264,14 @@ class _Search:
         if not key:
             screen = self.screen
             places = range(screen.number, screen.number + len(screen.patterns))
-            found = unknown(screen.marginal.of(places))
+            found = unknown(screen.marginal.of(places), self.options)
             return found.log_factor, found
         around = self.around[key]
         suspects = tuple(self.screen.suspects[place] for place in key)
         best = max(_choices(suspects), key=lambda chosen: log_factor(around, chosen))
         number = len(self.screen.patterns)
         places = range(len(around.score) - number, len(around.score))
-        found = unknown(around.given(best.places, best.mean, best.std).of(places))
+        found = unknown(around.given(best.places, best.mean, best.std).of(places), self.options)
         return self.factors[key] + found.log_factor, found
 
 
@@ -331,7 +328,7 @@ def infer(
     ]
     likely = sorted((key for key in search.around), key=search.weight, reverse=True)
     odds = float(np.log(options.unknown_rate / (1.0 - options.unknown_rate)))
-    for key in [(), *likely[:WITH_UNKNOWN]]:
+    for key in [(), *likely[: options.sets_with_unknown]]:
         factor, patterns = search.beside(key)
         found.append(
             Explanation(
@@ -342,10 +339,11 @@ def infer(
                 patterns,
             )
         )
-    return Posterior(_weighted(found, options.temperature))
+    return Posterior(weighted(found, options.temperature))
 
 
-def _weighted(found: Sequence[Explanation], temperature: float) -> tuple[Explanation, ...]:
+def weighted(found: Sequence[Explanation], temperature: float) -> tuple[Explanation, ...]:
+    """Return explanations with their probabilities, the likeliest first."""
     weights = np.array([own.log_odds + own.log_factor / temperature for own in found])
     shares: FloatArray = np.exp(weights - logsumexp(weights))
     whole = [

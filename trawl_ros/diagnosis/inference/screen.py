@@ -26,9 +26,6 @@ from trawl_ros.solver.predict import Predictor
 USUAL_PATTERN, LARGEST_PATTERN = 3.0, 1e3
 """Usual and largest size of a pattern where something is wrong, in std of a reading."""
 
-POWER = 0.84
-"""Normal quantile of 80 %."""
-
 LARGEST_NOISE = 1.5
 """Largest noise over the noise stated: it is measured by the scatter of the readings themselves."""
 
@@ -210,5 +207,5 @@ def detectable(
     odds = np.log(chosen.cut / (1.0 - chosen.cut)) - suspect.log_odds
     needed = chosen.temperature * odds + 0.5 * np.log1p(information)
     with np.errstate(invalid='ignore', divide='ignore'):
-        sigmas = np.sqrt(2.0 * needed * (1.0 + 1.0 / information)) + POWER
+        sigmas = np.sqrt(2.0 * needed * (1.0 + 1.0 / information)) + chosen.power_quantile
     return np.where(np.isfinite(std), sigmas * std, np.inf)

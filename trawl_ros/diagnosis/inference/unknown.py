@@ -13,12 +13,7 @@ from scipy.special import logsumexp
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.inference.marginal import Marginal
-
-SIZES = (2.0, 8.0)
-"""Std of the size of a pattern, in std of a reading; both are as likely."""
-
-MOST = 25
-"""Largest number of patterns."""
+from trawl_ros.diagnosis.inference.options import InferenceOptions
 
 
 @dataclass(frozen=True)
@@ -30,13 +25,15 @@ class Unknown:
     sizes: tuple[float, ...]
 
 
-def unknown(found: Marginal) -> Unknown:
+def unknown(found: Marginal, options: InferenceOptions) -> Unknown:
     """Add patterns while they explain more than they cost.
 
     Parameters
     ----------
     found
         Marginal of the sizes of all patterns.
+    options
+        Sizes and largest number of patterns.
     """
     number = len(found.score)
     if number == 0:
@@ -46,16 +43,16 @@ def unknown(found: Marginal) -> Unknown:
     stds: list[float] = []
     path: list[float] = []
     here = found
-    for _ in range(min(MOST, number)):
-        factors = np.array([_factors(here, size) for size in SIZES])
+    for _ in range(min(options.most_patterns, number)):
+        factors = np.array([_factors(here, size) for size in options.pattern_sizes])
         factors[:, places] = -np.inf
-        each = logsumexp(factors, axis=0) - np.log(len(SIZES) * number)
+        each = logsumexp(factors, axis=0) - np.log(len(options.pattern_sizes) * number)
         place = int(np.argmax(each))
         if places and each[place] <= 0.0:
             break
         total += float(each[place])
         path.append(total)
-        size = SIZES[int(np.argmax(factors[:, place]))]
+        size = options.pattern_sizes[int(np.argmax(factors[:, place]))]
         here = here.given([place], np.zeros(1), np.array([size]))
         places.append(place)
         stds.append(size)

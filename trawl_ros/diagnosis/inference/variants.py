@@ -15,7 +15,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.inference.marginal import Marginal
 from trawl_ros.diagnosis.library.entries import Entry
 
-SIZES = ((1.0, 0.6), (3.0, 0.4))
+SIZE_MIXTURE = ((1.0, 0.6), (3.0, 0.4))
 """Std of the size in those of the table, and the share of causes that have it."""
 
 WHOLE_STD = 0.05
@@ -75,7 +75,7 @@ def variants_of(entry: Entry, start: FloatArray, *, alone: bool) -> tuple[Varian
         found += [
             Variant(places, np.zeros(len(std)), np.full(len(std), size), low, high,
                     float(np.log(share * part)))
-            for size, part in SIZES
+            for size, part in SIZE_MIXTURE
         ]  # fmt: skip
     return tuple(found)
 

@@ -12,8 +12,8 @@ from trawl_ros.effects.base.effect import Effect, Parameter, Readings, Situation
 from trawl_ros.effects.empirical import usual_error
 from trawl_ros.records.channels import CHANNELS, MEASURED
 
-FURTHEST = 20.0
-"""So many times further than is common a drift is possible."""
+MAX_USUAL_SIZES = 20.0
+"""Largest possible drift, in usual ones."""
 
 SIDES = ('port', 'starboard')
 
@@ -82,7 +82,7 @@ def _drift(
     channels: tuple[str, ...] = (),
     inputs: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> Drift:
-    far = FURTHEST * usual
+    far = MAX_USUAL_SIZES * usual
     return Drift(
         name=f'{name}_drift',
         sentence=f'{words.capitalize()} drift through each tow.',

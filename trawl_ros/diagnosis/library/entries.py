@@ -18,7 +18,7 @@ from trawl_ros.effects.empirical import dictionary
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.gear.records import GearRecord
 
-OTHER = NodeRecord(
+OTHER_CAUSES = NodeRecord(
     path='other causes',
     rate=1.0,
     reason='an effect of another package, which no table has',
@@ -107,7 +107,7 @@ def library(
     listed = {effect.name for _, _, effect, _ in found} | {row.name for row in table.entries}
     for name, effect in possible.items():
         if effect.fitted and name not in listed:
-            found.append((name, OTHER, effect, tuple(range(len(effect.parameters)))))
+            found.append((name, OTHER_CAUSES, effect, tuple(range(len(effect.parameters)))))
     at = {row.name: nodes[row.at] for row in table.entries}
     found += [
         (change.name, at[change.record.name], change, (0,)) for change in changes_of(gear, *more)

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Effect that changes numbers at keys of a gear file and rebuilds the gear."""
+"""Effect that changes numbers at keys of a gear file and builds the gear again."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -17,8 +17,8 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.line import BarProperties
 
-KEPT = 4
-"""So many sizes are kept built: a derivative takes two, at all windows."""
+CACHED_SIZES = 4
+"""Number of sizes whose gear is cached; a derivative takes two in all windows."""
 
 SIDES = ('port', 'starboard')
 
@@ -62,7 +62,7 @@ class GearFileChange(Effect):
         if size == 0.0:
             return model
         if size not in self._built:
-            while len(self._built) >= KEPT:
+            while len(self._built) >= CACHED_SIZES:
                 self._built.pop(next(iter(self._built)))
             if self.side is None or self.both is None:
                 built = build_model(changed(self.believed, self.record, size))

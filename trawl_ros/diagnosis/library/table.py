@@ -13,7 +13,7 @@ from trawl_ros.core.resources import share_path
 from trawl_ros.core.schema import Record, load_yaml, validated
 from trawl_ros.gear.numbers import Positive
 
-FOLDER = 'hypotheses'
+TABLES_FOLDER = 'hypotheses'
 """Folder of ``config`` whose files are read."""
 
 Name = Annotated[str, Field(pattern=r'^[a-z][a-z0-9_]{0,40}$')]
@@ -115,7 +115,7 @@ def hypothesis_table(*more: Path) -> TableRecord:
     """
     nodes: dict[str, NodeRecord] = {}
     entries: dict[str, EntryRecord] = {}
-    for path in (*sorted(share_path('config', FOLDER).glob('*.yaml')), *more):
+    for path in (*sorted(share_path('config', TABLES_FOLDER).glob('*.yaml')), *more):
         table = validated(TableRecord, load_yaml(path, TrawlError), path, TrawlError)
         nodes |= {node.path: node for node in table.nodes}
         for number, entry in enumerate(table.entries):

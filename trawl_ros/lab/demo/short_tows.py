@@ -24,7 +24,7 @@ from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.trials.linearised_plant import LinearisedState, MeshResolution
 from trawl_ros.lab.trials.readings import AS_STATED, steady_windows
-from trawl_ros.lab.trials.tows import FULL, PlannedTow
+from trawl_ros.lab.trials.tows import FULL_PLAN, PlannedTow
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import steady_state
 
@@ -56,7 +56,7 @@ class ShortTows:
 
     gear: str = 'kaifuha'
     mesh: MeshResolution = COARSE
-    tows: tuple[PlannedTow, ...] = FULL.tows[:5]
+    tows: tuple[PlannedTow, ...] = FULL_PLAN.tows[:5]
     log_error_m_s: float = 0.45
     seed: int = 1
 

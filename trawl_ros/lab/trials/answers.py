@@ -2,16 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Right answers to blind trials: leaves of the library for each hidden cause, fixed beforehand."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 from trawl_ros.diagnosis.library.table import hypothesis_table
-from trawl_ros.lab.trials.hidden_effects.inside import INSIDE
-from trawl_ros.lab.trials.hidden_effects.other_keys import RIGHT_CHANGES, RIGHT_NAMES
+from trawl_ros.lab.trials.hidden_effects.inside import INSIDE, Draw
+from trawl_ros.lab.trials.hidden_effects.other_keys import CAUSES, RIGHT_CHANGES, RIGHT_NAMES
+from trawl_ros.lab.trials.hidden_effects.outside import OUTSIDE
+
+EVERY_CAUSE: Mapping[str, Draw] = {**INSIDE, **OUTSIDE, **CAUSES}
+"""All causes that can be hidden, by name."""
 
 NOT_IN_LIBRARY = ('block_angle', 'opening_by_depth')
 """Hidden causes that no hypothesis of the library is."""
 
-OF_OUTSIDE: Mapping[str, tuple[str, ...]] = {
+LEAVES_OF_OUTSIDE: Mapping[str, tuple[str, ...]] = {
     'bridle_weed': (
         'starboard_bridle_diameter',
         'starboard_bridle_friction',
@@ -27,7 +31,7 @@ OF_OUTSIDE: Mapping[str, tuple[str, ...]] = {
 }
 """Leaves of causes that the catalogue of effects does not have."""
 
-ALSO: Mapping[str, tuple[str, ...]] = {
+SAME_IN_ANOTHER_FORM: Mapping[str, tuple[str, ...]] = {
     'current_shear': ('current_profile_along',),
     'cross_current': ('current_profile_across',),
     'tide': ('log_drift',),
@@ -45,15 +49,19 @@ def right_leaves(cause: str) -> tuple[str, ...]:
     """Return the leaves of the library that a hidden cause is; none if it is outside of it."""
     if cause in NOT_IN_LIBRARY:
         return ()
-    if cause in OF_OUTSIDE:
-        return OF_OUTSIDE[cause]
+    if cause in LEAVES_OF_OUTSIDE:
+        return LEAVES_OF_OUTSIDE[cause]
     effects = (cause,) if cause in INSIDE else RIGHT_NAMES[cause]
     leaves = [
         row.name
         for row in hypothesis_table().entries
         if not row.keys and (row.effect or row.name) in effects
     ]
-    return tuple(dict.fromkeys((*leaves, *RIGHT_CHANGES.get(cause, ()), *ALSO.get(cause, ()))))
+    return tuple(
+        dict.fromkeys(
+            (*leaves, *RIGHT_CHANGES.get(cause, ()), *SAME_IN_ANOTHER_FORM.get(cause, ()))
+        )
+    )
 
 
 def right_nodes(cause: str) -> tuple[str, ...]:
@@ -64,12 +72,16 @@ def right_nodes(cause: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(at[leaf] for leaf in right_leaves(cause)))
 
 
-def holds(named: str, causes: Iterable[str]) -> bool:
-    """Return True if a named leaf or node (a path) holds one of the hidden causes."""
-    leaf = named.rpartition('/')[2]
-    for cause in causes:
-        if leaf in right_leaves(cause):
-            return True
-        if any(own == named or own.startswith(f'{named}/') for own in right_nodes(cause)):
-            return True
-    return False
+SIZED_AS_HIDDEN = ('board_area', 'footrope_weight', 'headrope_length', 'kite_weight', 'front_twine',
+                   'board_mass', 'warp_diameter', 'twine', 'warp_hole_ahead')  # fmt: skip
+"""Changes of the gear file that are hidden in this very form, so that sizes can be compared."""
+
+
+def right_sizes(cause: str, size: float) -> Mapping[str, float]:
+    """Return the true value of each right leaf whose size has the unit of the hidden one."""
+    # The factor of strumming is neutral at 1; all other sizes are neutral at 0.
+    return {
+        leaf: size + (1.0 if leaf == 'warp_strumming' else 0.0)
+        for leaf in right_leaves(cause)
+        if leaf == cause or leaf in SIZED_AS_HIDDEN
+    }

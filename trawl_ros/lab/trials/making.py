@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Construction of blind cases: visible data, and the key."""
+"""Blind trials: visible data and the key."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,10 +16,8 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.lab.trials.answers import EVERY_CAUSE
 from trawl_ros.lab.trials.hidden_effects.hidden import Hidden
-from trawl_ros.lab.trials.hidden_effects.inside import INSIDE
-from trawl_ros.lab.trials.hidden_effects.other_keys import CAUSES
-from trawl_ros.lab.trials.hidden_effects.outside import OUTSIDE
 from trawl_ros.lab.trials.linearised_plant import LinearisedState, MeshResolution
 from trawl_ros.lab.trials.plant import Plant, draw_plant
 from trawl_ros.lab.trials.readings import (
@@ -41,17 +39,35 @@ from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.stepper import StepFailed
 from trawl_ros.solver.trimming.drawn_board import fastened_as
 
-WRONG_BY = 0.3
-"""Relative deviation of the true noise and biases of each sensor from the stated ones."""
 
-DROPOUTS = 0.02
-"""Share of missing means, in windows in which a channel fell silent."""
+@dataclass(frozen=True)
+class MakingOptions:
+    """Options of blind trials.
 
-MOST_PLANTS, ANOTHER = 20, 1000
-"""Plants that are drawn at most, and the step from the number of one to that of the next."""
+    Attributes
+    ----------
+    sensor_deviation
+        Relative deviation of the true noise and biases of each sensor from the stated ones.
+    dropout_share
+        Share of windows in which an optional channel is silent.
+    most_plants, next_plant
+        Largest number of plants that are drawn, and the step from one number to the next.
+    length_std, speed_std
+        Std (m, m/s) of the states about the plan.
+    hours_spread
+        Largest distance (h) of a state from its planned time.
+    """
 
-LENGTH_JITTER, SPEED_JITTER, HOURS_JITTER = 4.0, 0.02, 0.05
-"""Std of how far (m, m/s, h) states are from the plan."""
+    sensor_deviation: float = 0.3
+    dropout_share: float = 0.02
+    most_plants: int = 20
+    next_plant: int = 1000
+    length_std: float = 4.0
+    speed_std: float = 0.02
+    hours_spread: float = 0.05
+
+
+MAKING_OPTIONS = MakingOptions()
 
 
 @dataclass(frozen=True)
@@ -71,20 +87,12 @@ class SeededTrial:
             return None
 
 
-@dataclass(frozen=True)
-class TrialData:
-    """Windows of a trial, and the same from instruments without errors."""
-
-    windows: tuple[SteadyWindow, ...]
-    quiet: tuple[SteadyWindow, ...]
-
-
 def hide(spec: Spec, gear: str, cut: MeshResolution, seed: int) -> SeededTrial:
     """Hide the wanted effects if possible."""
     shape = chance_of(spec, seed)
     plant = _plant(gear, cut, seed, spec.plant, spec.plan)
     likely = likelihood_of(gear, cut, seed, spec.plant, spec.plan)
-    drawn = tuple({**INSIDE, **OUTSIDE, **CAUSES}[name](shape) for name in spec.effects)
+    drawn = tuple(EVERY_CAUSE[name](shape) for name in spec.effects)
     # Two at once are each as strong as if it were alone.
     outside = spec.series == 'outside'
     detectable = tuple(
@@ -105,18 +113,19 @@ def hide(spec: Spec, gear: str, cut: MeshResolution, seed: int) -> SeededTrial:
     )
     coefficients = tuple(map(float, plant.coefficients))
     key = Key(spec, sizes, units, detectable, not why_not, why_not, coefficients, {})
-    # The instruments of a trial stay the same when she is out again.
-    sensors = wrong_by(WRONG_BY, chance_of(spec, seed, 'sensors'))
+    sensors = wrong_by(MAKING_OPTIONS.sensor_deviation, chance_of(spec, seed, 'sensors'))
     return SeededTrial(key, plant, tuple(zip(drawn, sizes, strict=True)), sensors)
 
 
 def chance_of(spec: Spec, seed: int, what: str = '') -> np.random.Generator:
     """Random generator of a trial."""
-    return np.random.default_rng([seed, spec.origin, *spec.series.encode(), *what.encode()])
+    return np.random.default_rng([seed, spec.number, *spec.series.encode(), *what.encode()])
 
 
-def make(spec: Spec, gear: str, cut: MeshResolution, seed: int) -> tuple[Key, TrialData | None]:
-    """Make a case of windows, or state in its key why it cannot be made."""
+def make(
+    spec: Spec, gear: str, cut: MeshResolution, seed: int
+) -> tuple[Key, tuple[SteadyWindow, ...] | None]:
+    """Make a trial of windows, or give the reason in its key why it cannot be made."""
     hiding, plan = hide(spec, gear, cut, seed), PLANS[spec.plan]
     if not hiding.key.testable:
         return hiding.key, None
@@ -124,15 +133,8 @@ def make(spec: Spec, gear: str, cut: MeshResolution, seed: int) -> tuple[Key, Tr
     if tows is None:
         return replace(hiding.key, testable=False, why_not='cannot be towed'), None
     windows, looks = windows_of(tows, chance_of(spec, seed, 'noise'), plan, hiding.sensors)
-    quiet = tuple(_quiet(window, look) for window, look in zip(windows, looks, strict=True))
     floor = floor_of(windows, looks, plan.baseline)
-    return replace(hiding.key, floor=floor), TrialData(windows, quiet)
-
-
-def _quiet(window: SteadyWindow, look: LinearisedState) -> SteadyWindow:
-    inputs = dict(zip(INPUTS, look.inputs, strict=True))
-    means = {name: inputs.get(name) or look[name] for name in window.means}
-    return replace(window, means=means)
+    return replace(hiding.key, floor=floor), windows
 
 
 def floor_of(
@@ -183,8 +185,8 @@ def windows_of(
 
 
 def _jittered(look: LinearisedState, rng: np.random.Generator) -> LinearisedState:
-    length = LENGTH_JITTER * rng.standard_normal()
-    speed = SPEED_JITTER * rng.standard_normal()
+    length = MAKING_OPTIONS.length_std * rng.standard_normal()
+    speed = MAKING_OPTIONS.speed_std * rng.standard_normal()
     state = (look.state[0] + length, look.state[1] + speed)
     values = look.values + look.by_inputs @ np.array([length, length, speed])
     return replace(look, state=state, values=values)
@@ -195,7 +197,9 @@ def _as_seen(
 ) -> SteadyWindow:
     # Windows without a channel that is required are none.
     lost = {
-        name for name in window.means if not CHANNELS[name].required and rng.uniform() < DROPOUTS
+        name
+        for name in window.means
+        if not CHANNELS[name].required and rng.uniform() < MAKING_OPTIONS.dropout_share
     }
 
     def kept(values: Mapping[str, float]) -> dict[str, float]:
@@ -205,7 +209,7 @@ def _as_seen(
         window,
         index=number,
         state=number,
-        hours=at.hours + HOURS_JITTER * rng.uniform(-1.0, 1.0),
+        hours=at.hours + MAKING_OPTIONS.hours_spread * rng.uniform(-1.0, 1.0),
         track=GroundTrack(0.0 if at.sense > 0.0 else np.pi, 0.0, 0.0, False),
         means=kept(window.means),
         noise=kept(window.noise),
@@ -224,8 +228,9 @@ def _plant(gear: str, cut: MeshResolution, seed: int, number: int, plan: str) ->
         If none of many can.
     """
     states = sorted({state for tow in PLANS[plan].tows for state in tow.states})
-    for attempt in range(MOST_PLANTS):
-        plant = draw_plant(gear, cut, seed, number + ANOTHER * attempt, states)
+    for attempt in range(MAKING_OPTIONS.most_plants):
+        own = number + MAKING_OPTIONS.next_plant * attempt
+        plant = draw_plant(gear, cut, seed, own, states)
         record = fastened_as(cut.model(gear), plant.model.gear)
         model = build_model(record).with_coefficients(board_prior(record).start)
         near: Equilibrium | None = None
@@ -236,7 +241,9 @@ def _plant(gear: str, cut: MeshResolution, seed: int, number: int, plan: str) ->
         except NoSteadyState:
             continue
         return plant
-    raise TrawlError(f'plant {number}: none of {MOST_PLANTS} gear files can be towed')
+    raise TrawlError(
+        f'plant {number}: none of {MAKING_OPTIONS.most_plants} gear files can be towed'
+    )
 
 
 def gear_aboard(gear: str, cut: MeshResolution, seed: int, number: int, plan: str) -> GearRecord:
@@ -254,7 +261,7 @@ def likelihood_of(gear: str, cut: MeshResolution, seed: int, number: int, plan: 
 
 
 def make_bags(spec: Spec, gear: str, cut: MeshResolution, seed: int, folder: Path) -> Key:
-    """Make a case as bags in a folder, unless its hidden effect is not possible."""
+    """Make a trial of bags in a folder, unless its hidden cause is not possible."""
     hiding = hide(spec, gear, cut, seed)
     if not hiding.key.testable:
         return hiding.key
@@ -262,8 +269,8 @@ def make_bags(spec: Spec, gear: str, cut: MeshResolution, seed: int, folder: Pat
         courses = _in_time(hiding) if spec.form == 'dynamic' else _steady(hiding)
     except (NoSteadyState, StepFailed) as reason:
         return replace(hiding.key, testable=False, why_not=f'cannot be towed: {reason}')
-    rng = chance_of(spec, seed, spec.form)
-    record_tows(folder, courses, hiding.plant.model.water, hiding.sensors, DROPOUTS, rng)
+    rng, dropouts = chance_of(spec, seed, spec.form), MAKING_OPTIONS.dropout_share
+    record_tows(folder, courses, hiding.plant.model.water, hiding.sensors, dropouts, rng)
     return hiding.key
 
 

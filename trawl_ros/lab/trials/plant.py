@@ -13,7 +13,7 @@ from trawl_ros.lab.trials.hidden_effects.hidden import Hidden
 from trawl_ros.lab.trials.hidden_effects.on_deck import with_other_law
 from trawl_ros.lab.trials.linearised_plant import LinearisedState, MeshResolution
 from trawl_ros.lab.trials.tows import (
-    FULL,
+    FULL_PLAN,
     STATES,
     BlindTrialPlan,
     PlannedTow,
@@ -28,10 +28,10 @@ from trawl_ros.solver.sensitivity import sensitivities
 from trawl_ros.solver.slow_mode import slow_mode
 from trawl_ros.solver.trimming.drawn_board import BoardDraw, draw_board
 
-FINER = MeshResolution(around=12, lines=2, unjoined=True)
+FINER_MESH = MeshResolution(around=12, lines=2, unjoined=True)
 """Mesh resolution of plant and model of blind cases."""
 
-DRAW = BoardDraw(std_factor=0.5)
+BOARD_DRAW = BoardDraw(std_factor=0.5)
 """Boards are drawn with half of the prior's std.
 
 This corresponds to a gear known from its drawing and an earlier trial.
@@ -70,7 +70,7 @@ class Plant:
     def towed(
         self,
         effects: Sequence[tuple[Hidden, float]],
-        plan: BlindTrialPlan = FULL,
+        plan: BlindTrialPlan = FULL_PLAN,
     ) -> tuple[tuple[LinearisedState, ...], ...]:
         """All tows with effects of some sizes hidden in those that are no baseline.
 
@@ -145,7 +145,7 @@ def draw_plant(
         If none of many boards can be towed.
     """
     rng = np.random.default_rng([seed, number, *b'plant'])
-    drawn = draw_board(cut.plant(gear), list(states), rng, DRAW, build=_built)
+    drawn = draw_board(cut.plant(gear), list(states), rng, BOARD_DRAW, build=_built)
     clean = {state: _clean(drawn.model, state, found) for state, found in drawn.steady.items()}
     return Plant(drawn.model, drawn.coefficients, clean)
 

@@ -65,7 +65,7 @@ class SensorKind:
 
 _DEGREE = np.pi / 180.0
 
-KINDS: Mapping[str, SensorKind] = {
+SENSOR_KINDS: Mapping[str, SensorKind] = {
     'length': SensorKind(1.0, 0.05, 0.0),
     'speed': SensorKind(1.0, 0.03, 0.02),
     'tension': SensorKind(1.0, 1600.0, 1500.0),
@@ -79,10 +79,10 @@ KINDS: Mapping[str, SensorKind] = {
 """As ``bags/sea_trial.yaml`` has them, SI, of the spread what is left without its false echoes and
 gaps; the opening as read off the sonar's image."""
 
-SENSED = tuple(name for name in MEASURED if group_of(name) in KINDS)
+SENSED_CHANNELS = tuple(name for name in MEASURED if group_of(name) in SENSOR_KINDS)
 """Channels of these sensors."""
 
-NAMES = (*SENSED, *INPUTS)
+SENSED_NAMES = (*SENSED_CHANNELS, *INPUTS)
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class Sensors:
 
     def mean_std(self, name: str) -> float:
         """Standard deviation of the mean of one window's noise, in the channel's unit."""
-        return self.factor(name) * KINDS[group_of(name)].mean_std
+        return self.factor(name) * SENSOR_KINDS[group_of(name)].mean_std
 
     def state_std(self, name: str, value: float) -> float:
         """Standard deviation of what changes from one state to the next, in the channel's unit."""
@@ -110,14 +110,14 @@ class Sensors:
         return self.factor(name) * channel.state_std(channel.bias_std(value), self.state_share)
 
 
-AS_STATED = Sensors(dict.fromkeys(KINDS, 1.0))
+AS_STATED = Sensors(dict.fromkeys(SENSOR_KINDS, 1.0))
 SAME_IN_ALL_STATES = replace(AS_STATED, state_share=0.0)
 """Sensors as stated, without errors that change with the state."""
 
 
 def wrong_by(part: float, rng: np.random.Generator) -> Sensors:
     """Return sensors that are each either worse or better than stated by this share."""
-    return Sensors({name: 1.0 + part * rng.choice((-1.0, 1.0)) for name in KINDS})
+    return Sensors({name: 1.0 + part * rng.choice((-1.0, 1.0)) for name in SENSOR_KINDS})
 
 
 def drawn_errors(
@@ -127,8 +127,8 @@ def drawn_errors(
     offset, scale = (
         {name: sensors.factor(name) * std * rng.standard_normal() for name, std in stds}
         for stds in (
-            [(name, CHANNELS[name].bias) for name in NAMES],
-            [(name, CHANNELS[name].bias_fraction) for name in NAMES],
+            [(name, CHANNELS[name].bias) for name in SENSED_NAMES],
+            [(name, CHANNELS[name].bias_fraction) for name in SENSED_NAMES],
         )
     )
     return offset, scale
@@ -165,16 +165,16 @@ def steady_windows(
         offset, scale = drawn_errors(sensors, rng)
         for look in looks:
             means, noise, counts = {}, {}, {}
-            for name in NAMES:
+            for name in SENSED_NAMES:
                 truth = _truth(look, name)
                 own = sensors.state_std(name, truth) * rng.standard_normal()
                 centre = (1.0 + scale[name]) * truth + offset[name] + own
-                kind = KINDS[group_of(name)]
+                kind = SENSOR_KINDS[group_of(name)]
                 readings = centre + sensors.factor(name) * kind.noise(rng)
                 means[name] = float(readings.mean())
                 noise[name] = error_of_mean(readings, kind.stated)
                 counts[name] = len(readings)
-            bias = {name: CHANNELS[name].bias_std(means[name]) for name in NAMES}
+            bias = {name: CHANNELS[name].bias_std(means[name]) for name in SENSED_NAMES}
             index = next(indices)
             start_ns = (index + 1) * 10 * length_ns
             windows.append(

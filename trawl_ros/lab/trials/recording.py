@@ -11,7 +11,7 @@ from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.fit.error_terms import group_of
-from trawl_ros.lab.trials.readings import KINDS, NAMES, Sensors, drawn_errors
+from trawl_ros.lab.trials.readings import SENSED_NAMES, SENSOR_KINDS, Sensors, drawn_errors
 from trawl_ros.lab.trials.towing import HOLD_S, Course
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.to_messages import sample_message
@@ -32,13 +32,17 @@ from trawl_ros.records.topics import absolute
 SILENT_S = 90.0
 """Time before and after the planned instant of a state during which a channel is silent."""
 
-CURRENT = 0.2
+CURRENT_STD = 0.2
 """Std (m/s) of the current between GPS and log."""
 
 HEADING_STD = 0.01
 GROUND_STD = 0.03
-PLACES = {'port_door_depth': 'port', 'starboard_door_depth': 'starboard', 'net_depth': 'sonar'}
-DISTANCES = {'door_spread': 'spread', 'vertical_opening': 'opening_height'}
+DEPTH_PLACES = {
+    'port_door_depth': 'port',
+    'starboard_door_depth': 'starboard',
+    'net_depth': 'sonar',
+}
+RANGE_NAMES = {'door_spread': 'spread', 'vertical_opening': 'opening_height'}
 
 Readings = tuple[FloatArray, FloatArray]
 """Times (n,), s, and values (n,) of one channel."""
@@ -72,7 +76,7 @@ def record_tows(
     folder.mkdir()
     for number, course in enumerate(courses, start=1):
         found = _readings(course, sensors, dropouts, rng)
-        current = CURRENT * rng.standard_normal(2)
+        current = CURRENT_STD * rng.standard_normal(2)
         samples = [*_samples(found, water), *_ship(course, found, current, rng)]
         start = number * 86_400 * SECOND
         with BagWriter(folder / f'tow_{number:02}') as bag:
@@ -90,8 +94,8 @@ def _readings(
     # When one state is left for the next.
     left = np.add(course.moments, HOLD_S)[:-1]
     found = {}
-    for name in NAMES:
-        kind = KINDS[group_of(name)]
+    for name in SENSED_NAMES:
+        kind = SENSOR_KINDS[group_of(name)]
         times = np.arange(0.0, course.times[-1], 1.0 / kind.rate_hz)
         inputs, values = course.at(times)
         if name in INPUTS:
@@ -122,19 +126,19 @@ def _samples(found: dict[str, Readings], water: Water) -> Iterator[Sample]:
         yield WinchSample(_stamp(time), (length, starboard), (0.0, 0.0), (tensions[0], tensions[1]))
     for time, speed in zip(*found['speed'], strict=True):
         yield VelocitySample(_stamp(time), 'water', np.array([speed, 0.0, 0.0]), float('nan'))
-    for name, place in PLACES.items():
-        std = KINDS[group_of(name)].stated
+    for name, place in DEPTH_PLACES.items():
+        std = SENSOR_KINDS[group_of(name)].stated
         for time, depth in zip(*found[name], strict=True):
             pressure = water.pressure(depth)
             yield PressureSample(
                 _stamp(time), place, pressure, water.pressure(depth + std) - pressure
             )
-    for name, what in DISTANCES.items():
-        std = KINDS[group_of(name)].stated
+    for name, what in RANGE_NAMES.items():
+        std = SENSOR_KINDS[group_of(name)].stated
         for time, distance in zip(*found[name], strict=True):
             yield RangeSample(_stamp(time), what, distance, std, 0.5, 500.0)
     for side in ('port', 'starboard'):
-        std = KINDS['pitch'].stated
+        std = SENSOR_KINDS['pitch'].stated
         for time, pitch, roll in _together(found[f'{side}_pitch'], found[f'{side}_roll']):
             yield AttitudeSample(_stamp(time), side, pitch, roll, std)
 

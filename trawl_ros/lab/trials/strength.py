@@ -19,6 +19,7 @@ from trawl_ros.diagnosis.holdout import split
 from trawl_ros.diagnosis.inference.blocks import ErrorSize, blocks_of
 from trawl_ros.diagnosis.inference.candidates import Candidate, signatures, values_vector
 from trawl_ros.diagnosis.inference.marginal import Marginal, marginal
+from trawl_ros.diagnosis.inference.options import InferenceOptions
 from trawl_ros.diagnosis.inference.refit import OPTIONS
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
@@ -28,21 +29,18 @@ from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.trials.hidden_effects.hidden import Hidden
 from trawl_ros.lab.trials.linearised_plant import LinearisedState
 from trawl_ros.lab.trials.plant import Plant
-from trawl_ros.lab.trials.readings import SENSED
-from trawl_ros.lab.trials.tows import FULL, BlindTrialPlan
+from trawl_ros.lab.trials.readings import SENSED_CHANNELS
+from trawl_ros.lab.trials.tows import FULL_PLAN, BlindTrialPlan
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
-ALARM = 0.01 / 30.0
+FALSE_ALARM = 0.01 / 30.0
 """False-alarm probability of each of about thirty tests, for 1 % over all of them."""
 
-POWER = 0.84
-"""Normal quantile of 80 %."""
-
-SIGMAS = float(norm.isf(0.5 * ALARM)) + POWER
+DETECTED_SIGMAS = float(norm.isf(0.5 * FALSE_ALARM)) + InferenceOptions().power_quantile
 """Strength in standard deviations that is detected in 80 % of cases."""
 
-AS_KNOWN = ErrorSize(calibration=1.0, model=1.0, form=0.0)
+ERRORS_AS_STATED = ErrorSize(calibration=1.0, model=1.0, form=0.0)
 """Size of errors where each is as it is stated."""
 
 MAX_PROBES = 10
@@ -86,7 +84,7 @@ class Likelihood:
                 continue
             if seen <= 0.0:
                 return np.inf
-            wanted = size * SIGMAS / seen
+            wanted = size * DETECTED_SIGMAS / seen
             close = abs(wanted / size - 1.0) < SIZE_TOLERANCE
             if close or hidden.whole or (wanted > most and np.isinf(high)):
                 return float(wanted)
@@ -102,7 +100,7 @@ class Likelihood:
     def _sigmas(self, hidden: Hidden, size: float, beside_catalogue: bool) -> float:
         """Strength of an effect in standard deviations."""
         changed = self.plant.towed([(hidden, size)], self.plan)
-        rows = [OBSERVABLES.index(name) for name in SENSED]
+        rows = [OBSERVABLES.index(name) for name in SENSED_CHANNELS]
         columns = [
             (there.values - clean.values)[rows][:, None]
             for there, clean in zip(_flat(changed), self._clean, strict=True)
@@ -125,7 +123,7 @@ class Likelihood:
         return _flat(self.plant.towed((), self.plan))
 
     def _information(self, columns: Sequence[FloatArray]) -> Marginal:
-        return marginal(blocks_of(self.fit, columns, errors=AS_KNOWN))
+        return marginal(blocks_of(self.fit, columns, errors=ERRORS_AS_STATED))
 
     @cached_property
     def wanted(self) -> tuple[Candidate, ...]:
@@ -148,7 +146,7 @@ def likelihood(
     plant: Plant,
     prior: ParameterVector,
     windows: Sequence[SteadyWindow],
-    plan: BlindTrialPlan = FULL,
+    plan: BlindTrialPlan = FULL_PLAN,
 ) -> Likelihood:
     """Linearise a plant.
 
@@ -165,7 +163,7 @@ def likelihood(
         Tows of the trial.
     """
     deciding = {window.index for window in split(windows, frozenset(range(plan.baseline))).deciding}
-    rows = [OBSERVABLES.index(name) for name in SENSED]
+    rows = [OBSERVABLES.index(name) for name in SENSED_CHANNELS]
     parts = []
     states = [state for tow in plan.tows for state in tow.states]
     for window, state in zip(windows, states, strict=True):
@@ -175,7 +173,7 @@ def likelihood(
         parts.append(
             Linearised(
                 window=window,
-                channels=SENSED,
+                channels=SENSED_CHANNELS,
                 at=plant.coefficients,
                 inputs=np.array(clean.look.inputs),
                 net=np.ones(2),

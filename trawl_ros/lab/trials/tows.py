@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Planned cases: their steady states, courses and times."""
+"""Planned trials: their steady states, courses and times."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class BlindTrialPlan:
     baseline: int
 
 
-FULL = BlindTrialPlan(
+FULL_PLAN = BlindTrialPlan(
     tuple(
         PlannedTow(states, eastward=number % 2 == 0)
         for number, states in enumerate((_ONE, _TWO, _THREE, _ONE, _TWO, _THREE, _ONE, _TWO))
@@ -60,20 +60,10 @@ FULL = BlindTrialPlan(
 )
 """Plan with two courses, in which each state comes early in one tow and late in another."""
 
-_ALIKE: tuple[State, ...] = ((550.0, 2.0), (550.0, 2.2), (550.0, 2.4))
-POOR = BlindTrialPlan(
-    (*FULL.tows[:2], *(PlannedTow(_ALIKE, eastward=True) for _ in range(3))), baseline=2
-)
-"""Plan in which the suspect gear was towed on one course with one warp length.
-
-Such tows leave many causes indistinguishable.
-"""
-
 _FISHING: tuple[State, ...] = ((450.0, 2.2), (650.0, 2.4), (650.0, 2.0))
 _DEEPER: tuple[State, ...] = ((550.0, 2.4), (800.0, 2.2), (450.0, 2.0))
-_LONGER: tuple[State, ...] = ((300.0, 2.2), (550.0, 2.2), (900.0, 2.2), (650.0, 2.2))
 
-DAY = BlindTrialPlan(
+DAY_PLAN = BlindTrialPlan(
     (
         PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False),
         PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False),
@@ -82,28 +72,7 @@ DAY = BlindTrialPlan(
 )  # fmt: skip
 """Plan of one baseline and three tows of an hour, three states each."""
 
-SEA: Mapping[str, BlindTrialPlan] = {
-    'day': DAY,
-    'three tows': BlindTrialPlan(
-        (PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False), PlannedTow(_FISHING, True)),
-        baseline=1,
-    ),
-    'two tows': BlindTrialPlan((PlannedTow(_TWO, True), PlannedTow(_TWO, False)), baseline=1),
-    'no baseline': BlindTrialPlan(
-        (PlannedTow(_LONGER, True), PlannedTow(_DEEPER, False), PlannedTow(_FISHING, True)),
-        baseline=0,
-    ),
-    'four tows': BlindTrialPlan(
-        (
-            PlannedTow(_FISHING, True), PlannedTow(_DEEPER, False),
-            PlannedTow(_LONGER, True), PlannedTow(_DEEPER, False),
-        ),
-        baseline=1,
-    ),
-}  # fmt: skip
-"""Plans of a day at sea: some hours and few states, with or without a baseline."""
-
-PLANS: Mapping[str, BlindTrialPlan] = {'full': FULL, 'poor': POOR, **SEA}
+PLANS: Mapping[str, BlindTrialPlan] = {'full': FULL_PLAN, 'day': DAY_PLAN}
 
 STATES = tuple(
     sorted({state for plan in PLANS.values() for tow in plan.tows for state in tow.states})

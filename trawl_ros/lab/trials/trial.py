@@ -1,14 +1,13 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Records of a blind case: its specification, its key, and its diagnosis."""
+"""Records of a blind trial: its specification and its key."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any, Literal
-
-import numpy as np
+from dataclasses import dataclass
+from typing import Literal
 
 Form = Literal['windows', 'bags', 'dynamic']
+Series = Literal['clean', 'alone', 'outside', 'pair']
 
 
 @dataclass(frozen=True)
@@ -18,28 +17,25 @@ class Spec:
     Attributes
     ----------
     series
-        'clean', 'inside', 'outside', 'pair', 'triple', 'poor', 'deck' or 'sea', and 'followed' of
-        one that was towed on.
+        Nothing hidden, one cause of the library, one outside of it, or two causes.
     number
-        Within the study.
+        Number of the trial for this seed.
     effects
-        Names of what is hidden.
+        Names of the hidden causes.
     strength
-        In smallest detectable sizes.
+        Strength of each, in smallest detectable sizes.
     signs
-        To which sides.
+        Sign of the size of each.
     plant
         Number of the plant.
     plan
         Name of one of `PLANS`.
     form
-        Input of the diagnosis: windows worked out from steady states, or bags of one steady state
-        after the other, or of tows in time.
-    like
-        Number of the trial in which the same is hidden, where there is one.
+        Form of the data: windows computed from linearised steady states, bags of one steady state
+        after another, or bags of tows simulated in time.
     """
 
-    series: str
+    series: Series
     number: int
     effects: tuple[str, ...]
     strength: float
@@ -47,19 +43,26 @@ class Spec:
     plant: int
     plan: str = 'full'
     form: Form = 'windows'
-    like: int | None = None
-
-    @property
-    def origin(self) -> int:
-        """Number of the trial with the same draws."""
-        return self.number if self.like is None else self.like
 
 
 @dataclass(frozen=True)
 class Key:
-    """Key of a case: its hidden effects, ``testable`` or not; only the scorer reads it.
+    """Key of a trial; only the scorer reads it.
 
-    ``floor`` are the plant's own errors by channel, on the windows held out of the fit.
+    Attributes
+    ----------
+    spec
+        Specification of the trial.
+    sizes, units
+        Size of each hidden cause, and its unit.
+    detectable
+        Smallest detectable size of each.
+    testable, why_not
+        False if the trial cannot be made, and the reason.
+    coefficients
+        Board coefficients (12,) of the plant.
+    floor
+        RMS errors by channel, on the held-out windows, of the plant itself as a model.
     """
 
     spec: Spec
@@ -70,30 +73,3 @@ class Key:
     why_not: str
     coefficients: tuple[float, ...]
     floor: Mapping[str, float]
-
-    def record(self) -> dict[str, Any]:
-        """Return it as plain values; infinite sizes are null."""
-        record = asdict(self)
-        for name in ('sizes', 'detectable'):
-            record[name] = [value if np.isfinite(value) else None for value in record[name]]
-        return record
-
-
-@dataclass(frozen=True)
-class Scored:
-    """Scored trial: its key and its diagnosis, None without one.
-
-    Attributes
-    ----------
-    key
-        As `Key.record` has it.
-    diagnosis
-        ``diagnosis.json``; None where the trial is not testable.
-    quiet
-        Best fit of readings without errors, the right effect among it; only of some
-        of the trials in which it was named.
-    """
-
-    key: dict[str, Any]
-    diagnosis: dict[str, Any] | None
-    quiet: dict[str, Any] | None = None

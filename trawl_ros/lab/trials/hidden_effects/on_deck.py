@@ -19,7 +19,7 @@ from trawl_ros.lab.trials.hidden_effects.outside import MoreLoad
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.hooks import DRAG, LIFT
 
-BUILT = 64
+CACHED_GEARS = 64
 """Number of cached gear models, since cases tow the same gear in all states."""
 
 NORMAL_DRAG, FRICTION = 0.985, 1.15
@@ -39,7 +39,7 @@ def with_other_law(model: GearModel) -> GearModel:
     return replace(model, bars=bars)
 
 
-@lru_cache(BUILT)
+@lru_cache(CACHED_GEARS)
 def _built(gear: GearRecord) -> GearModel:
     return with_other_law(build_model(gear))
 

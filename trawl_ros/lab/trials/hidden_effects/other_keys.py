@@ -23,7 +23,7 @@ from trawl_ros.lab.trials.hidden_effects.on_deck import (
 )
 from trawl_ros.model.gear_model import GearModel
 
-MIDDLE = 1.4
+MIDDLE_HOURS = 1.4
 """Hours into a tow, about its middle."""
 
 
@@ -63,7 +63,7 @@ def _setting_in(name: str, *, reversed_: bool) -> Draw:
 
     def draw(rng: np.random.Generator) -> Hidden:
         def gear(size: float, model: GearModel, at: Situation) -> GearModel:
-            profile = np.array([0.0, 0.0, 1.0, 1.0]) * (at.hours - MIDDLE)
+            profile = np.array([0.0, 0.0, 1.0, 1.0]) * (at.hours - MIDDLE_HOURS)
             way: FloatArray = at.along if reversed_ else ahead(at)
             currents = size * profile[:, None] * way
             return replace(model, water=model.water.with_more_current(depths, currents))

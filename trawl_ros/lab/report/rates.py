@@ -1,3 +1,5 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
 """Rates, medians and other figures of trials with their intervals, as rows of a report."""
 
 from collections.abc import Callable, Sequence
@@ -58,26 +60,4 @@ def rate(
     low, high = 100.0 * ends.low, 100.0 * ends.high
     return MeasuredValue(
         what, 100.0 * count / number, '%', between(least, most), counted, low, high
-    )
-
-
-def median(
-    what: str,
-    values: Sequence[float],
-    unit: str,
-    *,
-    least: float | None = None,
-    most: float | None = None,
-) -> MeasuredValue:
-    """The median, of trials whose effect was named rightly."""
-    if not values:
-        return MeasuredValue(what, np.nan, unit, between(least, most), 'no trials')
-    known = np.array(values)
-    return figure_row(
-        what,
-        lambda some: float(np.median(known[some])),
-        len(known),
-        unit,
-        between(least, most),
-        f'{len(known)} trials named rightly at 3 and 6 times; median; {AGAIN}',
     )
