@@ -63,8 +63,8 @@ def _kinds(
 @click.option('--spread', type=SPREAD, help='Door spread that determines the angles, m.')
 @click.option('--depth', type=DEPTH, help='Door depth that determines the angles, m.')
 @click.option(
-    '--tension-kn',
-    type=Number(0.1, 2000.0),
+    '--tension',
+    type=QuantityNumber('tension', 100.0, 2e6),
     help='Tension of a warp measured with --spread and --depth, kN; compared with the model.',
 )
 @click.option(
@@ -100,7 +100,7 @@ def command(
     pitch: float,
     spread: float | None,
     depth: float | None,
-    tension_kn: float | None,
+    tension: float | None,
     warp: float,
     speed: float,
     warps: tuple[float, float] | None,
@@ -132,8 +132,8 @@ def command(
         _refuse_ignored(context, {'warp': warps, 'speed': speeds})
     elif spread is None or depth is None or attack is not None or inclination is not None:
         raise click.UsageError('expected either --attack and --inclination or --spread and --depth')
-    if tension_kn is not None and angles is not None:
-        raise click.UsageError('--tension-kn: expected together with --spread and --depth')
+    if tension is not None and angles is not None:
+        raise click.UsageError('--tension: expected together with --spread and --depth')
     if out is not None:
         require_new(out)
     record = load_gear(gear)
@@ -143,7 +143,7 @@ def command(
         assert spread is not None
         assert depth is not None
         wanted, traded = _measured(
-            model, changes, spread, depth, tension_kn, (warp, speed), pitch, tell
+            model, changes, spread, depth, tension, (warp, speed), pitch, tell
         )
         angles = wanted.attack, wanted.inclination
         model, changes = traded.model(model), ()
@@ -281,7 +281,7 @@ def _measured(
     changes: 'tuple[RigChange, ...]',
     spread: float,
     depth: float,
-    tension_kn: float | None,
+    tension: float | None,
     place: tuple[float, float],
     pitch: float,
     tell: 'Comment',
@@ -294,7 +294,7 @@ def _measured(
     if changes and not found.met:
         tell(found.told())
         found, traded = trade_for_place(model, changes, found, **at)
-    tell(found.told(None if tension_kn is None else 1e3 * tension_kn))
+    tell(found.told(tension))
     if traded.changes:
         tell(f'with {traded.told}')
     return found, traded
