@@ -22,6 +22,7 @@ from trawl_ros.core.display_units import METRIC, DisplayUnits
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.core.progress import OnProgress, ignore
+from trawl_ros.core.resources import bag_name
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.topics import NAMESPACE
@@ -99,7 +100,7 @@ def compare(
     )
     result = _result(found.rows, 'the gear file says', units, courses)
     name = record.name if isinstance(gear, GearRecord) else str(gear)
-    result = replace(result, logs=tuple(map(str, logs)), gear=name, notes=found.notes)
+    result = replace(result, logs=tuple(map(bag_name, logs)), gear=name, notes=found.notes)
     return _written(result, out, units)
 
 
@@ -163,7 +164,7 @@ def compare_bags(
     course = ComparedCourse(_hours(one), one.course.values, moved.values)
     words = 'states' if by == 'state' else 'stretches'
     result = _result(rows, f'{names[1]} has', units, (course,), words)
-    result = replace(result, kind='bags', logs=(str(first), str(second)), names=names)
+    result = replace(result, kind='bags', logs=(bag_name(first), bag_name(second)), names=names)
     return _written(result, out, units)
 
 
