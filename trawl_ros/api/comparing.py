@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.comparison.comparison import ComparedCourse, Comparison
 from trawl_ros.comparison.reading import ReadLog, read_log
 from trawl_ros.comparison.rows import Rows
@@ -188,6 +187,9 @@ def _bags(logs: Sequence[str | Path], mapping: str | Path | None) -> Iterator[li
     if mapping is None:
         yield [Path(log) for log in logs]
         return
+    # Readers of tables load slowly.
+    from trawl_ros.bags.logs.import_log import import_log
+
     with TemporaryDirectory() as folder:
         bags = [Path(folder) / f'{number}' / Path(log).name for number, log in enumerate(logs)]
         for log, bag in zip(logs, bags, strict=True):
