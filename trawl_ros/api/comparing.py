@@ -21,7 +21,7 @@ from trawl_ros.core.display_units import METRIC, DisplayUnits
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.core.progress import OnProgress, ignore
-from trawl_ros.core.resources import bag_name
+from trawl_ros.core.resources import bag_name, packaged_bag
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.topics import NAMESPACE
@@ -148,7 +148,9 @@ def compare_bags(
     if out is not None:
         empty_folder(Path(out), force=force)
     record = gear if isinstance(gear, GearRecord) else load_gear(gear)
-    read = [read_log(Path(path), record, namespace, on_progress) for path in (first, second)]
+    read = [
+        read_log(packaged_bag(path), record, namespace, on_progress) for path in (first, second)
+    ]
     one, other = read
     _note(read, on_note)
     options = alignment or Alignment()
@@ -185,7 +187,7 @@ def _result(
 def _bags(logs: Sequence[str | Path], mapping: str | Path | None) -> Iterator[list[Path]]:
     """Yield paths of bags, those of imported logs in a folder that lasts as long."""
     if mapping is None:
-        yield [Path(log) for log in logs]
+        yield [packaged_bag(log) for log in logs]
         return
     # Readers of tables load slowly.
     from trawl_ros.bags.logs.import_log import import_log

@@ -13,6 +13,7 @@ import numpy as np
 from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import BagError, NoSteadyState
+from trawl_ros.core.resources import packaged_bag
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
@@ -116,11 +117,13 @@ def swept(
     --------
     >>> import trawl_ros
     >>> from trawl_ros.api.swept import swept
-    >>> for one in swept('bags/sea_trial')[:1]:
+    >>> for one in swept('sea_trial')[:1]:
     ...     print(one.name, one.unit, one.source)
     distance over ground m measured
     """
-    stream = SampleStream([Path(bag)], namespace, topics=[CHANNELS[name].topic for name in USED])
+    stream = SampleStream(
+        [packaged_bag(bag)], namespace, topics=[CHANNELS[name].topic for name in USED]
+    )
     try:
         return swept_of_samples((sample for _, sample in stream), load_gear(gear))
     except BagError as reason:

@@ -11,6 +11,7 @@ from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.files import new_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.core.resources import packaged_bag
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.records.samples import Sample
@@ -176,9 +177,9 @@ def read_bag(bag: str | Path, *, namespace: str = NAMESPACE) -> Iterator[Sample]
     Examples
     --------
     >>> import trawl_ros
-    >>> samples = trawl_ros.read_bag('bags/sea_trial')
+    >>> samples = trawl_ros.read_bag('sea_trial')
     >>> type(next(samples)).__name__.endswith('Sample')
     True
     """
-    for _, sample in SampleStream([Path(bag)], namespace):
+    for _, sample in SampleStream([packaged_bag(bag)], namespace):
         yield sample
