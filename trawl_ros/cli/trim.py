@@ -16,7 +16,6 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.display_units import DisplayUnits
 
 if TYPE_CHECKING:
-    from trawl_ros.gear.records import GearRecord
     from trawl_ros.model.gear_model import GearModel
     from trawl_ros.records.observables import Observables
     from trawl_ros.solver.advising.rig_changes import RigChange
@@ -120,10 +119,11 @@ def command(
     coordinates so that the angles change little over the range. With --free it also changes the
     rigging, if the wanted values are not reached or part of the range is not usable.
     """
-    from trawl_ros.gear.edit import require_new, write_changed
+    from trawl_ros.gear.edit import WRITTEN_DECIMALS, require_new, write_changed
     from trawl_ros.gear.load import load_gear
     from trawl_ros.model.gear_model import build_model
     from trawl_ros.solver.advising.rig_changes import changes_of
+    from trawl_ros.solver.trimming.drawn_board import with_fastening
     from trawl_ros.solver.trimming.traded import Traded
 
     angles, wanted = None, None
@@ -157,7 +157,9 @@ def command(
             usable = False
     traded = Traded((*traded.changes, *more.changes))
     if out is not None:
-        write_changed(gear, out, _with_points(traded.gear(record), points))
+        write_changed(
+            gear, out, with_fastening(traded.gear(record), points.round(WRITTEN_DECIMALS))
+        )
         click.echo(f'# written: {out}')
     if not usable:
         raise SystemExit(1)
@@ -264,18 +266,6 @@ def _advice_lines(found: 'RangeTrim') -> tuple[str, ...]:
     return told.lines[1:] if told is not None else ()
 
 
-def _with_points(gear: 'GearRecord', points: FloatArray) -> 'GearRecord':
-    names = 'warp_m', 'upper_bridle_m', 'lower_bridle_m'
-    rounded = {
-        name: tuple(round(float(x), 3) for x in point)
-        for name, point in zip(names, points, strict=True)
-    }
-    board = gear.board.model_copy(
-        update={'fastening': gear.board.fastening.model_copy(update=rounded)}
-    )
-    return gear.model_copy(update={'board': board})
-
-
 def _measured(
     model: 'GearModel',
     changes: 'tuple[RigChange, ...]',
@@ -302,14 +292,9 @@ def _measured(
 
 def points_lines(points: FloatArray) -> tuple[str, ...]:
     """Return fastening points in the format of a gear file."""
-    names = 'warp_m', 'upper_bridle_m', 'lower_bridle_m'
-    return (
-        '  fastening:',
-        *(
-            f'    {name}: [{", ".join(f"{x:.3f}" for x in point)}]'
-            for name, point in zip(names, points, strict=True)
-        ),
-    )
+    from trawl_ros.gear.edit import fastening_lines
+
+    return ('  fastening:', *(f'    {line}' for line in fastening_lines(points)))
 
 
 def state_line(warp: float, speed: float, steady: 'SteadyState') -> str:
