@@ -120,10 +120,13 @@ def test_another_door_is_fitted_or_refused_with_what_is_needed(run: Run, own_gea
 
 
 def test_files_that_are_not_there_are_named_with_those_that_are(run: Run):
+    Path('log.csv').write_text('s,warp,spread\n0,500,150\n')
     for line, words in (
         ('compare sea_trail --gear kaifuha', ('sea_trail',)),
         ('gear state kaifuah --warp 500 --speed 2.1', ('kaifuah', 'kaifuha')),
         ('gear check none.yaml', ('none.yaml',)),
+        ('gear set-door kaifuha high_lift --warp 500 --speed 2.1', ('trawl gear copy',)),
+        ('compare log.csv --gear kaifuha', ('log.csv', 'trawl import-log LOG --draft')),
         ('gear state kaifuha --warp 500 --speed 4tonnes', ('tonnes', 'kn')),
     ):
         done = run(line)

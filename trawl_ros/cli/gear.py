@@ -11,6 +11,7 @@ from trawl_ros.cli.console.state_lines import state_lines
 from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.cli.options import FILE, FOLDER, SPEED, UNITS_OPTION, WARP, Number
 from trawl_ros.core.display_units import DisplayUnits
+from trawl_ros.core.errors import GearError
 
 EXIT_FINDINGS = 3
 """Exit code of ``trawl gear check`` with findings; 1 is an error, 2 wrong usage."""
@@ -196,7 +197,7 @@ def copy(gear: str, file: Path) -> None:
 
 
 @command.command('set-door')
-@click.argument('file', type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.argument('file', type=FILE)
 @click.argument('door')
 @click.option('--warp', required=True, type=WARP, help='Warp length of a usual tow, m.')
 @click.option('--speed', required=True, type=SPEED, help='Its speed through the water, m/s.')
@@ -218,6 +219,11 @@ def set_door(
     from trawl_ros.gear.polars import load_door
     from trawl_ros.solver.trimming.new_door import fit_door
 
+    if not file.is_file():
+        raise GearError(
+            f'{file}: no such file, expected a gear file of your own: trawl gear copy GEAR {file} '
+            'makes one'
+        )
     old, published = load_gear(file), load_door(door)
     with ProgressDisplay(error_console()) as display:
         found = fit_door(
