@@ -6,9 +6,13 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2, from the system or the extra `ros`')
 
-from trawl_ros.bags.reader import summarise
+from trawl_ros import tow
+from trawl_ros.bags.reader import Bag, summarise
+from trawl_ros.lab.demo.command import topics_of_channels
+from trawl_ros.nodes.playback.replay import replayed
+from trawl_ros.records.channels import CHANNELS, REQUIRED
 from trawl_ros.records.coefficients import COEFFICIENTS
-from trawl_ros.records.topics import TRUTH, absolute
+from trawl_ros.records.topics import NAMESPACE, TRUTH, absolute
 
 pytestmark = pytest.mark.ros
 
@@ -49,6 +53,15 @@ def test_the_chain_loses_nothing_and_ends_with_an_estimate(run, trial, tmp_path)
     assert len(list(out.glob('*.png'))) >= 3
     assert set(summary['figures']) == {path.name for path in out.glob('*.png')}
     assert not (out / 'hidden').exists()
+
+
+def test_the_replay_asks_for_topics_that_the_bag_has(trial, tmp_path):
+    tow(trial, tmp_path / 'bag')
+    wanted = topics_of_channels(tmp_path / 'bag')
+    played, left_out = replayed(Bag(tmp_path / 'bag'), wanted, NAMESPACE)
+    assert sorted(played) == sorted(wanted)
+    assert left_out == []
+    assert {absolute(CHANNELS[name].topic) for name in REQUIRED} <= played.keys()
 
 
 def test_a_folder_of_somebody_else_is_refused_before_anything_starts(run, tmp_path):

@@ -8,7 +8,7 @@ import yaml
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.scenario.scenario import load_scenario
 
-FEW = ('--lengths-m', '200', '--speeds-m-s', '2.5,2.3', '--hours', '0.6')
+FEW = ('--warps', '200', '--speeds', '2.5,2.3', '--hours', '0.6')
 
 
 @pytest.fixture
@@ -48,12 +48,23 @@ def test_says_what_is_wrong_with_the_question(run, coarse_gear):
     done = run('plan-trial', 'no-such-gear')
     assert done.exit_code == 1
     assert 'no-such-gear' in done.stderr
-    few = ('--lengths-m', '200', '--speeds-m-s', '2.5')
+    few = ('--warps', '200', '--speeds', '2.5')
     done = run('plan-trial', coarse_gear, *few, '--hours', '0.05')
     assert done.exit_code == 1
     assert '0.05 h' in done.stderr
-    done = run('plan-trial', coarse_gear, *few, '--max-tension-kn', '20')
+    done = run('plan-trial', coarse_gear, *few, '--max-tension', '20')
     assert done.exit_code == 1
     assert 'tension' in done.stderr
-    for wrong in (('--lengths-m', '5'), ('--speeds-m-s', 'fast'), ('--hours', '0')):
+    for wrong in (('--warps', '5'), ('--speeds', 'fast'), ('--hours', '0')):
         assert run('plan-trial', coarse_gear, *wrong).exit_code == 2
+
+
+def test_reads_and_prints_the_units_of_a_bridge(run, coarse_gear):
+    words = ('--warps', '110fm', '--speeds', '4.5,4.9', '--hours', '0.6', '--max-tension', '30')
+    done = run('plan-trial', coarse_gear, *words, '--units', 'sea,warp=fm')
+    assert done.exit_code == 0, done.output
+    head, leg = done.stdout.splitlines()[:2]
+    assert 'warps, fm' in head
+    assert 'speed, kn' in head
+    assert leg.split()[1].split('/')[-1] == '110'
+    assert float(leg.split()[2]) in {4.5, 4.9}

@@ -40,6 +40,23 @@ def test_instruments_and_truth_come_at_their_rates(run, trial, tmp_path):
     assert '× real time' in done.stdout
 
 
+def test_the_end_is_printed_in_the_units_of_a_bridge(run, trial, tmp_path):
+    done = run('tow', trial, '--out', tmp_path / 'bag', '--units', 'sea,depth=fm')
+    *_, place, doors, mouth, tension = done.stdout.splitlines()
+    assert ' m of warp at ' in place
+    assert place.endswith(' kn:')
+    assert doors.endswith(' fm deep')
+    assert ' m wide, headrope ' in mouth
+    assert ' t on a warp' in tension
+
+
+def test_a_refusal_is_in_the_units_of_a_bridge(run, trial, tmp_path):
+    trial.write_text(trial.read_text().replace('warp_length_m: 500.0', 'warp_length_m: 10.0'))
+    done = run('tow', trial, '--out', tmp_path / 'bag', '--units', 'imperial')
+    assert done.exit_code == 1
+    assert 'warp 5 fm at 4.08 kn: the gear' in done.stderr
+
+
 def test_only_what_the_scenario_records_is_recorded(run, trial, tmp_path):
     trial.write_text(f'{trial.read_text()}record: [instruments]\ntruth_rate_hz: 1.0\n')
     assert run('tow', trial, '--out', tmp_path / 'bag').exit_code == 0

@@ -2,16 +2,22 @@
 
 import json
 import math
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from trawl_ros import compare
+from trawl_ros import compare, load_gear
 from trawl_ros.cli.main import trawl
 from trawl_ros.comparison.comparison import Comparison
+from trawl_ros.comparison.reading import read_log
 from trawl_ros.core.errors import TrawlError
+from trawl_ros.core.time import SECOND
+from trawl_ros.records.samples import Sample, VelocitySample
 
 
 def relative(found: Comparison) -> dict[str, float]:
@@ -123,3 +129,20 @@ topics:
     assert relative(found)['door_spread'] == pytest.approx(-0.06, abs=0.003)
     assert relative(found)['port_tension'] == pytest.approx(0.07, abs=0.003)
     assert 'net_depth' not in relative(found)
+
+
+def test_a_gust_does_not_make_two_states_of_one(four_states: Any, coarse_gear: Path, tmp_path):
+    one_leg = replace(four_states, states=four_states.states[:1])
+
+    def samples() -> Iterator[Sample]:
+        for sample in one_leg.samples(leg_s=1000):
+            if isinstance(sample, VelocitySample) and 450 <= sample.stamp // SECOND < 470:
+                yield replace(sample, velocity=sample.velocity + np.array([0.3, 0.0, 0.0]))
+            else:
+                yield sample
+
+    bag = one_leg.write(tmp_path / 'bag', samples())
+    windows = read_log(bag, load_gear(coarse_gear), 'trawl').found.windows
+    assert min(window.start_ns for window in windows) < 450 * SECOND
+    assert max(window.start_ns for window in windows) > 470 * SECOND
+    assert {window.state for window in windows} == {0}

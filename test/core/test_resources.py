@@ -11,7 +11,7 @@ import pytest
 import trawl_ros
 from trawl_ros.bags.logs.mapping import load_mapping
 from trawl_ros.core.errors import GearError, InstrumentError, LogError, ScenarioError, TrawlError
-from trawl_ros.core.resources import share_path
+from trawl_ros.core.resources import bag_name, packaged_bag, share_path
 from trawl_ros.gear.load import load_gear
 from trawl_ros.instruments.parameters import load_instruments
 from trawl_ros.scenario.scenario import load_scenario
@@ -127,3 +127,9 @@ def test_a_name_that_is_nearly_one_of_them_is_answered_with_that_one(name):
     known = 'demo' if name.startswith('demo') else 'shakedown'
     with pytest.raises(ScenarioError, match=rf'\b{known}\b'):
         load_scenario(name)
+
+
+def test_a_sample_bag_is_spoken_of_by_its_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert bag_name(packaged_bag('sea_trial')) == 'sea_trial'
+    assert bag_name(tmp_path / 'sea_trial') == str(tmp_path / 'sea_trial')

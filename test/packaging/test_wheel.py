@@ -1,12 +1,16 @@
 """The wheel, built from the sdist, works in a new environment and an empty folder."""
 
+import os
 import resource
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
+from promised.documents import read_document
+from promised.story import ENDS, by_beginning, compare
 
 ROOT = Path(__file__).resolve().parents[2]
 TO_A_PICTURE_S = 90.0
@@ -17,7 +21,18 @@ Three minutes on the clock of an idle machine leave as much for the package inde
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
 
+GUIDES = ('compare', 'swap_doors', 'own_gear')
+"""Guides of a gear engineer, who has no ROS."""
+
 Run = Callable[..., subprocess.CompletedProcess[str]]
+
+
+class Installed(NamedTuple):
+    """What runs commands in an empty folder, the cost of installing (s), and the environment."""
+
+    run: Run
+    seconds: float
+    environment: Path
 
 
 def processor_s() -> float:
@@ -47,8 +62,8 @@ def installed(
     wheel: Path,
     new_shell: Callable[[Path], dict[str, str]],
     tmp_path_factory: pytest.TempPathFactory,
-) -> tuple[Run, float]:
-    """What runs commands of a new environment in an empty folder, and the cost of installing, s."""
+) -> Installed:
+    """The wheel in a new environment."""
     environment, folder = tmp_path_factory.mktemp('environment'), tmp_path_factory.mktemp('empty')
     begin = processor_s()
     subprocess.run([sys.executable, '-m', 'venv', environment], check=True)
@@ -64,11 +79,11 @@ def installed(
     if done.returncode and run('pip', 'download', '--no-deps', 'click').returncode:
         pytest.skip(f'no package index: {done.stderr.strip().splitlines()[-1]}')
     assert done.returncode == 0, done.stderr
-    return run, processor_s() - begin
+    return Installed(run, processor_s() - begin, environment)
 
 
 def test_the_second_command_draws_a_tow(installed):
-    run, seconds = installed
+    run, seconds, _ = installed
     begin = processor_s()
     done = run('trawl', 'plot', 'sea_trial', '--out', 'pictures')
     assert done.returncode == 0, done.stderr
@@ -111,3 +126,27 @@ def test_the_first_tow_says_why_it_takes_its_time(installed):
     assert done.returncode == 0, done.stderr
     assert 'compiling the loops of the model' in done.stderr.splitlines()[0]
     assert 'compiled' in done.stderr.splitlines()[1]
+
+
+@pytest.mark.parametrize('guide', GUIDES)
+def test_a_guide_works_in_an_empty_folder(installed, new_shell, tmp_path, guide):
+    document = read_document(ROOT / 'docs' / 'guides' / f'{guide}.md')
+    for name, text in document.files.items():
+        (tmp_path / name).write_text(text)
+    programs = installed.environment / 'bin'
+    shell = new_shell(tmp_path)
+    for promise in document.promises:
+        python = promise.language == 'python'
+        program = ('python', '-c') if python else ('bash', '-eo', 'pipefail', '-c')
+        done = subprocess.run(
+            [*program, promise.text],
+            cwd=tmp_path,
+            env={**shell, 'PATH': f'{programs}{os.pathsep}{shell["PATH"]}'},
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            text=True, check=False,
+        )  # fmt: skip
+        wanted = by_beginning(ENDS, promise.text, 0)
+        assert done.returncode == wanted, f'{promise.place}\n{done.stdout}'
+        if promise.printed is not None:
+            lines = done.stdout.splitlines(keepends=True)
+            compare(promise, ''.join(line for line in lines if not line.startswith('compil')))

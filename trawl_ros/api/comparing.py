@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.comparison.comparison import ComparedCourse, Comparison
 from trawl_ros.comparison.reading import ReadLog, read_log
 from trawl_ros.comparison.rows import Rows
@@ -22,6 +21,7 @@ from trawl_ros.core.display_units import METRIC, DisplayUnits
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.core.progress import OnProgress, ignore
+from trawl_ros.core.resources import bag_name, packaged_bag
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.topics import NAMESPACE
@@ -99,7 +99,7 @@ def compare(
     )
     result = _result(found.rows, 'the gear file says', units, courses)
     name = record.name if isinstance(gear, GearRecord) else str(gear)
-    result = replace(result, logs=tuple(map(str, logs)), gear=name, notes=found.notes)
+    result = replace(result, logs=tuple(map(bag_name, logs)), gear=name, notes=found.notes)
     return _written(result, out, units)
 
 
@@ -148,7 +148,9 @@ def compare_bags(
     if out is not None:
         empty_folder(Path(out), force=force)
     record = gear if isinstance(gear, GearRecord) else load_gear(gear)
-    read = [read_log(Path(path), record, namespace, on_progress) for path in (first, second)]
+    read = [
+        read_log(packaged_bag(path), record, namespace, on_progress) for path in (first, second)
+    ]
     one, other = read
     _note(read, on_note)
     options = alignment or Alignment()
@@ -163,7 +165,7 @@ def compare_bags(
     course = ComparedCourse(_hours(one), one.course.values, moved.values)
     words = 'states' if by == 'state' else 'stretches'
     result = _result(rows, f'{names[1]} has', units, (course,), words)
-    result = replace(result, kind='bags', logs=(str(first), str(second)), names=names)
+    result = replace(result, kind='bags', logs=(bag_name(first), bag_name(second)), names=names)
     return _written(result, out, units)
 
 
@@ -185,8 +187,11 @@ def _result(
 def _bags(logs: Sequence[str | Path], mapping: str | Path | None) -> Iterator[list[Path]]:
     """Yield paths of bags, those of imported logs in a folder that lasts as long."""
     if mapping is None:
-        yield [Path(log) for log in logs]
+        yield [packaged_bag(log) for log in logs]
         return
+    # Readers of tables load slowly.
+    from trawl_ros.bags.logs.import_log import import_log
+
     with TemporaryDirectory() as folder:
         bags = [Path(folder) / f'{number}' / Path(log).name for number, log in enumerate(logs)]
         for log, bag in zip(logs, bags, strict=True):

@@ -11,6 +11,8 @@ from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.files import new_folder
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.core.resources import packaged_bag
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.records.samples import Sample
 from trawl_ros.records.topics import NAMESPACE, absolute
@@ -34,6 +36,8 @@ class TowedBag:
         Duration of the tow, and of the scenario, s.
     complete
         True if the tow reached the end of the scenario.
+    gear, end
+        Gear that was towed, and the truth at the end of the tow.
 
     Examples
     --------
@@ -48,6 +52,8 @@ class TowedBag:
     duration_s: float
     planned_s: float
     complete: bool
+    gear: GearRecord
+    end: Truth
 
 
 def simulate(scenario: str | Path) -> Iterator[Truth]:
@@ -136,7 +142,15 @@ def tow(
             on_progress(WorkProgress('towing', trial.time_s, trial.duration_s, 's', step))
             if interrupted := stopped():
                 break
-    return TowedBag(out, dict(bag.counts), trial.time_s, trial.duration_s, not interrupted)
+    return TowedBag(
+        out,
+        dict(bag.counts),
+        trial.time_s,
+        trial.duration_s,
+        complete=not interrupted,
+        gear=loaded.plant,
+        end=trial.simulation.truth(),
+    )
 
 
 def read_bag(bag: str | Path, *, namespace: str = NAMESPACE) -> Iterator[Sample]:
@@ -163,9 +177,9 @@ def read_bag(bag: str | Path, *, namespace: str = NAMESPACE) -> Iterator[Sample]
     Examples
     --------
     >>> import trawl_ros
-    >>> samples = trawl_ros.read_bag('bags/sea_trial')
+    >>> samples = trawl_ros.read_bag('sea_trial')
     >>> type(next(samples)).__name__.endswith('Sample')
     True
     """
-    for _, sample in SampleStream([Path(bag)], namespace):
+    for _, sample in SampleStream([packaged_bag(bag)], namespace):
         yield sample

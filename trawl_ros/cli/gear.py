@@ -5,12 +5,13 @@
 from pathlib import Path
 
 import click
-import numpy as np
 
 from trawl_ros.cli.console.progress import ProgressDisplay, error_console
+from trawl_ros.cli.console.state_lines import state_lines
 from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.cli.options import FILE, FOLDER, SPEED, UNITS_OPTION, WARP, Number
 from trawl_ros.core.display_units import DisplayUnits
+from trawl_ros.core.errors import GearError
 
 EXIT_FINDINGS = 3
 """Exit code of ``trawl gear check`` with findings; 1 is an error, 2 wrong usage."""
@@ -146,22 +147,9 @@ def state(gear: str, warp: float, speed: float, units: DisplayUnits) -> None:
         for line in found.lines if found is not None else ():
             click.echo(units.sentence(line))
         raise SystemExit(1) from None
-    seen = steady.observables
-    if model.gear.pair is None:
-        click.echo(
-            f'α {np.degrees(seen.port_attack):.1f}°, δ {np.degrees(seen.port_inclination):.1f}°, '
-            f'doors {units.shown(seen.door_spread, "width")} apart and '
-            f'{units.shown(seen.door_depth, "depth")} deep'
-        )
-    click.echo(
-        f'mouth {units.shown(seen.vertical_opening, "width")} high and '
-        f'{units.shown(seen.horizontal_opening, "width")} wide, '
-        f'headrope {units.shown(seen.net_depth, "depth")} deep'
-    )
-    click.echo(
-        f'{units.shown(seen.warp_tension, "tension")} on a warp; the slowest motion settles in '
-        f'{steady.stability.settling_time:.0f} s'
-    )
+    *lines, tension = state_lines(steady.observables, units, paired=model.gear.pair is not None)
+    settles = f'the slowest motion settles in {steady.stability.settling_time:.0f} s'
+    click.echo('\n'.join((*lines, f'{tension}; {settles}')))
 
 
 @command.command('import')
@@ -209,12 +197,15 @@ def copy(gear: str, file: Path) -> None:
 
 
 @command.command('set-door')
-@click.argument('file', type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.argument('file', type=FILE)
 @click.argument('door')
 @click.option('--warp', required=True, type=WARP, help='Warp length of a usual tow, m.')
 @click.option('--speed', required=True, type=SPEED, help='Its speed through the water, m/s.')
 @click.option('--area', type=Number(0.1, 100.0), help='Area of the new plate, m²; else it stays.')
-def set_door(file: Path, door: str, warp: float, speed: float, area: float | None) -> None:
+@UNITS_OPTION
+def set_door(
+    file: Path, door: str, warp: float, speed: float, area: float | None, units: DisplayUnits
+) -> None:
     """Put a door of the catalogue on the gear in FILE, and change FILE.
 
     The command finds shackle points at which the boards have a usable steady state at --warp and
@@ -228,6 +219,11 @@ def set_door(file: Path, door: str, warp: float, speed: float, area: float | Non
     from trawl_ros.gear.polars import load_door
     from trawl_ros.solver.trimming.new_door import fit_door
 
+    if not file.is_file():
+        raise GearError(
+            f'{file}: no such file, expected a gear file of your own: trawl gear copy GEAR {file} '
+            'makes one'
+        )
     old, published = load_gear(file), load_door(door)
     with ProgressDisplay(error_console()) as display:
         found = fit_door(
@@ -236,8 +232,8 @@ def set_door(file: Path, door: str, warp: float, speed: float, area: float | Non
     board, text = found.gear.board, file.read_text(encoding='utf-8')
     write_door(file, with_door(text, board, found.trim.points, plate=area is not None))
     if found.before is not None:
-        click.echo(f'before: {state_line(warp, speed, found.before)}')
-    click.echo(f'now: {state_line(warp, speed, found.trim.steady)}')
+        click.echo(units.sentence(f'before: {state_line(warp, speed, found.before)}'))
+    click.echo(units.sentence(f'now: {state_line(warp, speed, found.trim.steady)}'))
     click.echo(f'{file}: changed; its board now has the law of {published.name} and these points:')
     click.echo('\n'.join(points_lines(found.trim.points)))
     click.echo(

@@ -14,7 +14,9 @@ from typing import Any
 import click
 
 from trawl_ros.cli.console.loaded_group import LoadedGroup
-from trawl_ros.core.errors import TrawlError, sentence_of
+from trawl_ros.cli.options import UNITS_KEY
+from trawl_ros.core.display_units import METRIC
+from trawl_ros.core.errors import NoSteadyState, TrawlError, sentence_of
 from trawl_ros.core.first_start import need_home
 from trawl_ros.core.version import __version__
 
@@ -63,7 +65,10 @@ class Trawl(LoadedGroup):
         try:
             return super().invoke(ctx)
         except TrawlError as error:
-            raise click.ClickException(printable(sentence_of(error))) from error
+            text = sentence_of(error)
+            if isinstance(error, NoSteadyState):
+                text = ctx.meta.get(UNITS_KEY, METRIC).sentence(text)
+            raise click.ClickException(printable(text)) from error
         except SystemExit as error:
             # Commands of the project never exit so; code of a plug-in effect may.
             if error.code not in (None, 0):

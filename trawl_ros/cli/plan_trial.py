@@ -9,7 +9,8 @@ import click
 
 from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.cli.console.tables import output_console, plain_table
-from trawl_ros.cli.options import FOLDER, FORCE_OPTION, Number
+from trawl_ros.cli.options import FOLDER, FORCE_OPTION, UNITS_OPTION, Number, QuantityNumber
+from trawl_ros.core.display_units import METRIC, DisplayUnits
 
 if TYPE_CHECKING:
     from trawl_ros.estimation.planning.plan import TrialPlan
@@ -18,13 +19,13 @@ MAX_VALUES_OF_A_LIST = 20
 """Each pair of length and speed takes seconds to solve."""
 
 
-class _Numbers(click.ParamType[tuple[float, ...]]):
-    """Sorted distinct numbers between two limits, separated by commas."""
+class _Quantities(click.ParamType[tuple[float, ...]]):
+    """Sorted distinct quantities between two limits (SI), separated by commas."""
 
-    name = 'numbers'
+    name = 'quantities'
 
-    def __init__(self, low: float, high: float) -> None:
-        self._one = Number(low, high)
+    def __init__(self, quantity: str, low: float, high: float) -> None:
+        self._one = QuantityNumber(quantity, low, high)
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -50,36 +51,38 @@ class _Numbers(click.ParamType[tuple[float, ...]]):
 )
 @click.option('--out', type=FOLDER, help='Folder for plan.json, trial.yaml and plan.png.')
 @click.option(
-    '--lengths-m',
-    type=_Numbers(20.0, 3000.0),
+    '--warps',
+    type=_Quantities('warp', 20.0, 3000.0),
     metavar='L,L,…',
     help='Warp lengths to choose from, m.  [default: as in the paper, 200 to 900]',
 )
 @click.option(
-    '--speeds-m-s',
-    type=_Numbers(0.5, 4.0),
+    '--speeds',
+    type=_Quantities('speed', 0.5, 4.0),
     metavar='U,U,…',
     help='Speeds to choose from, m/s.  [default: 1.9 to 2.5]',
 )
 @click.option(
-    '--max-tension-kn',
-    type=Number(0.0, 2000.0, min_open=True),
+    '--max-tension',
+    type=QuantityNumber('tension', 100.0, 2e6),
     help='Largest allowed tension of a warp, kN.',
 )
 @click.option(
-    '--seabed-m',
-    type=Number(10.0, 11_000.0),
+    '--seabed',
+    type=QuantityNumber('depth', 10.0, 11_000.0),
     help='Depth of the water, m; the gear stays 10 m above the seabed.',
 )
+@UNITS_OPTION
 @FORCE_OPTION
 def command(
     gear: str,
     hours: float,
     out: Path | None,
-    lengths_m: tuple[float, ...] | None,
-    speeds_m_s: tuple[float, ...] | None,
-    max_tension_kn: float | None,
-    seabed_m: float | None,
+    warps: tuple[float, ...] | None,
+    speeds: tuple[float, ...] | None,
+    max_tension: float | None,
+    seabed: float | None,
+    units: DisplayUnits,
     force: bool,
 ) -> None:
     """Plan a sea trial that determines the boards of GEAR best in a given time.
@@ -92,33 +95,36 @@ def command(
     from trawl_ros.estimation.planning.states import Limits
 
     limits = Limits(
-        lengths=lengths_m or Limits.lengths,
-        speeds=speeds_m_s or Limits.speeds,
-        max_tension=None if max_tension_kn is None else 1e3 * max_tension_kn,
-        seabed=seabed_m,
+        lengths=warps or Limits.lengths,
+        speeds=speeds or Limits.speeds,
+        max_tension=max_tension,
+        seabed=seabed,
     )
     with ProgressDisplay(error_console()) as display:
         plan = trials.plan_trial(
             gear, hours=hours, limits=limits, out=out, force=force, on_progress=display
         )
-    print_plan(plan)
+    print_plan(plan, units)
     if out is not None:
         click.echo(f'\nWritten to {out}. To tow it: trawl tow {out}/trial.yaml --out BAG')
 
 
-def print_plan(plan: 'TrialPlan') -> None:
+def print_plan(plan: 'TrialPlan', units: DisplayUnits = METRIC) -> None:
     """Print the legs, the accuracy after them, and what limits the rest."""
     from trawl_ros.estimation.fit.laws import LAWS, QUANTITIES
 
     console = output_console()
+    warps, speed = f'warps, {units.symbol("warp")}', f'speed, {units.symbol("speed")}'
     legs = plain_table(
-        'leg', 'warps / m', 'speed / (m/s)', 'minutes', 'well known', 'helps most', 'sd / span',
-        right=('leg', 'warps / m', 'speed / (m/s)', 'minutes', 'well known'),
+        'leg', warps, speed, 'minutes', 'well known', 'helps most', 'sd / span',
+        right=('leg', warps, speed, 'minutes', 'well known'),
     )  # fmt: skip
     for number, (leg, gain) in enumerate(zip(plan.trial.legs, plan.gains, strict=True), 1):
-        lengths, _, _ = str(leg.manoeuvre).partition(' ')
+        sides = (leg.manoeuvre.port_length, leg.manoeuvre.starboard_length)
+        lengths = '/'.join(dict.fromkeys(units.number(side, 'warp', 0) for side in sides))
         legs.add_row(
-            str(number), lengths, f'{leg.manoeuvre.speed:g}', f'{leg.total_minutes:.1f}',
+            str(number), lengths, units.number(leg.manoeuvre.speed, 'speed'),
+            f'{leg.total_minutes:.1f}',
             f'{gain.well_known} of {len(QUANTITIES)}', gain.quantity,
             f'{100 * gain.before:.1f} → {100 * gain.after:.1f} %',
         )  # fmt: skip
@@ -149,7 +155,7 @@ def print_plan(plan: 'TrialPlan') -> None:
     if sweep.legs:
         console.print(
             f'\nStandard deviations are relative to the span of each law over 15°. The sweep takes '
-            f'{len(sweep.legs)} states at {sweep.legs[0].manoeuvre.speed:g} m/s in '
+            f'{len(sweep.legs)} states at {units.shown(sweep.legs[0].manoeuvre.speed, "speed")} in '
             f'{sweep.minutes / 60.0:.2f} h.',
             soft_wrap=True,
         )

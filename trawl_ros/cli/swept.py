@@ -10,6 +10,7 @@ import click
 
 from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.cli.options import BAG, GEAR_OPTION, NAMESPACE_OPTION
+from trawl_ros.core.resources import bag_name
 
 
 @click.command('swept')
@@ -26,7 +27,7 @@ def command(bags: tuple[Path, ...], gear: str, namespace: str, as_json: bool) ->
     """
     from trawl_ros.api.swept import swept
 
-    found = {str(bag): swept(bag, gear, namespace=namespace) for bag in bags}
+    found = {bag_name(bag): swept(bag, gear, namespace=namespace) for bag in bags}
     if as_json:
         rows = {
             bag: [asdict(one) | {'interval': one.interval} for one in values]

@@ -16,7 +16,6 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.display_units import DisplayUnits
 
 if TYPE_CHECKING:
-    from trawl_ros.gear.records import GearRecord
     from trawl_ros.model.gear_model import GearModel
     from trawl_ros.records.observables import Observables
     from trawl_ros.solver.advising.rig_changes import RigChange
@@ -63,8 +62,8 @@ def _kinds(
 @click.option('--spread', type=SPREAD, help='Door spread that determines the angles, m.')
 @click.option('--depth', type=DEPTH, help='Door depth that determines the angles, m.')
 @click.option(
-    '--tension-kn',
-    type=Number(0.1, 2000.0),
+    '--tension',
+    type=QuantityNumber('tension', 100.0, 2e6),
     help='Tension of a warp measured with --spread and --depth, kN; compared with the model.',
 )
 @click.option(
@@ -100,7 +99,7 @@ def command(
     pitch: float,
     spread: float | None,
     depth: float | None,
-    tension_kn: float | None,
+    tension: float | None,
     warp: float,
     speed: float,
     warps: tuple[float, float] | None,
@@ -120,10 +119,11 @@ def command(
     coordinates so that the angles change little over the range. With --free it also changes the
     rigging, if the wanted values are not reached or part of the range is not usable.
     """
-    from trawl_ros.gear.edit import require_new, write_changed
+    from trawl_ros.gear.edit import WRITTEN_DECIMALS, require_new, write_changed
     from trawl_ros.gear.load import load_gear
     from trawl_ros.model.gear_model import build_model
     from trawl_ros.solver.advising.rig_changes import changes_of
+    from trawl_ros.solver.trimming.drawn_board import with_fastening
     from trawl_ros.solver.trimming.traded import Traded
 
     angles, wanted = None, None
@@ -132,8 +132,8 @@ def command(
         _refuse_ignored(context, {'warp': warps, 'speed': speeds})
     elif spread is None or depth is None or attack is not None or inclination is not None:
         raise click.UsageError('expected either --attack and --inclination or --spread and --depth')
-    if tension_kn is not None and angles is not None:
-        raise click.UsageError('--tension-kn: expected together with --spread and --depth')
+    if tension is not None and angles is not None:
+        raise click.UsageError('--tension: expected together with --spread and --depth')
     if out is not None:
         require_new(out)
     record = load_gear(gear)
@@ -143,7 +143,7 @@ def command(
         assert spread is not None
         assert depth is not None
         wanted, traded = _measured(
-            model, changes, spread, depth, tension_kn, (warp, speed), pitch, tell
+            model, changes, spread, depth, tension, (warp, speed), pitch, tell
         )
         angles = wanted.attack, wanted.inclination
         model, changes = traded.model(model), ()
@@ -157,7 +157,9 @@ def command(
             usable = False
     traded = Traded((*traded.changes, *more.changes))
     if out is not None:
-        write_changed(gear, out, _with_points(traded.gear(record), points))
+        write_changed(
+            gear, out, with_fastening(traded.gear(record), points.round(WRITTEN_DECIMALS))
+        )
         click.echo(f'# written: {out}')
     if not usable:
         raise SystemExit(1)
@@ -264,24 +266,12 @@ def _advice_lines(found: 'RangeTrim') -> tuple[str, ...]:
     return told.lines[1:] if told is not None else ()
 
 
-def _with_points(gear: 'GearRecord', points: FloatArray) -> 'GearRecord':
-    names = 'warp_m', 'upper_bridle_m', 'lower_bridle_m'
-    rounded = {
-        name: tuple(round(float(x), 3) for x in point)
-        for name, point in zip(names, points, strict=True)
-    }
-    board = gear.board.model_copy(
-        update={'fastening': gear.board.fastening.model_copy(update=rounded)}
-    )
-    return gear.model_copy(update={'board': board})
-
-
 def _measured(
     model: 'GearModel',
     changes: 'tuple[RigChange, ...]',
     spread: float,
     depth: float,
-    tension_kn: float | None,
+    tension: float | None,
     place: tuple[float, float],
     pitch: float,
     tell: 'Comment',
@@ -294,7 +284,7 @@ def _measured(
     if changes and not found.met:
         tell(found.told())
         found, traded = trade_for_place(model, changes, found, **at)
-    tell(found.told(None if tension_kn is None else 1e3 * tension_kn))
+    tell(found.told(tension))
     if traded.changes:
         tell(f'with {traded.told}')
     return found, traded
@@ -302,14 +292,9 @@ def _measured(
 
 def points_lines(points: FloatArray) -> tuple[str, ...]:
     """Return fastening points in the format of a gear file."""
-    names = 'warp_m', 'upper_bridle_m', 'lower_bridle_m'
-    return (
-        '  fastening:',
-        *(
-            f'    {name}: [{", ".join(f"{x:.3f}" for x in point)}]'
-            for name, point in zip(names, points, strict=True)
-        ),
-    )
+    from trawl_ros.gear.edit import fastening_lines
+
+    return ('  fastening:', *(f'    {line}' for line in fastening_lines(points)))
 
 
 def state_line(warp: float, speed: float, steady: 'SteadyState') -> str:

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reading of a log for a comparison: all steady minutes, and the course of every channel."""
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 
@@ -99,7 +99,7 @@ def read_log(
         if number % PROGRESS_EVERY == 0:
             on_progress(WorkProgress('reading', minutes.seconds, None, 's', path.name))
     decided += finder.finish()
-    windows = tuple(item for item in decided if isinstance(item, SteadyWindow))
+    windows = _joined(item for item in decided if isinstance(item, SteadyWindow))
     found = FoundWindows(
         name=path.name,
         windows=windows,
@@ -110,6 +110,24 @@ def read_log(
         problems=tuple(stream.problems),
     )
     return ReadLog(found, minutes.course())
+
+
+def _joined(windows: Iterable[SteadyWindow]) -> tuple[SteadyWindow, ...]:
+    """Number states again, so that a state goes on after a gust if warps and speed are the same.
+
+    The finder begins another one then. Errors that belong to a state would count as independent.
+    """
+    joined: list[SteadyWindow] = []
+    tolerance = dict.fromkeys(INPUTS, ALL_MINUTES.length_tolerance)
+    tolerance['speed'] = ALL_MINUTES.speed_tolerance
+    state, first = -1, None
+    for window in windows:
+        if first is None or any(
+            abs(window.means[name] - first.means[name]) > most for name, most in tolerance.items()
+        ):
+            state, first = state + 1, window
+        joined.append(replace(window, state=state))
+    return tuple(joined)
 
 
 def _why_not(finder: SteadyWindowFinder) -> str:

@@ -164,6 +164,6 @@ def parse_value(text: str, quantity: str, units: DisplayUnits = METRIC) -> float
 def _unit(name: str, kind: str) -> str:
     unit = ALIASES.get(name.lower(), name)
     if unit not in UNITS or UNITS[unit].quantity != kind:
-        known = ', '.join(SYMBOLS.get(known, known) for known in units_of(kind))
+        known = ', '.join(dict.fromkeys(SYMBOLS.get(known, known) for known in units_of(kind)))
         raise TrawlError(f"found the unit '{name}', expected one of {kind}: {known}")
     return unit

@@ -78,6 +78,12 @@ def packaged_bag(path: str | Path) -> Path:
     return sample or path
 
 
+def bag_name(path: str | Path) -> str:
+    """Return the name by which `packaged_bag` finds a sample bag, the path of any other."""
+    name = Path(path).name
+    return name if packaged_bag(name) == Path(path) else str(path)
+
+
 def _sample(name: str) -> Path | None:
     """Return a file or folder of the package's ``bags``, None if there is none of this name."""
     try:

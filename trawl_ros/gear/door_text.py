@@ -13,7 +13,7 @@ from trawl_ros.core.errors import GearError
 from trawl_ros.core.files import write_text, written
 from trawl_ros.core.resources import packaged
 from trawl_ros.gear.boards import BoardRecord
-from trawl_ros.gear.edit import WRITTEN_DECIMALS, edited, require_new
+from trawl_ros.gear.edit import WRITTEN_DECIMALS, edited, fastening_lines, require_new
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 
@@ -21,9 +21,6 @@ OLD_DOOR_KEYS: tuple[tuple[str, ...], ...] = (
     ('board', 'law'), ('board', 'coefficients'), ('board', 'fastening'), ('identification',),
 )  # fmt: skip
 """Keys that belong to the old door: its law, its fastening points and its prior."""
-
-POINT_NAMES = ('warp_m', 'upper_bridle_m', 'lower_bridle_m')
-"""Keys of the fastening points, in the order of `Board.points`."""
 
 
 def copy_gear(source: str | Path, out: Path) -> None:
@@ -76,10 +73,7 @@ def with_door(text: str, board: BoardRecord, points: FloatArray, *, plate: bool)
     rows = [
         f'law: {{kind: table, door: {board.law.door}}}',
         f'fastening:  # [derived] `trawl gear set-door` for {board.law.door}',
-        *(
-            f'  {name}: [{", ".join(f"{x:.3f}" for x in point)}]'
-            for name, point in zip(POINT_NAMES, points, strict=True)
-        ),
+        *(f'  {line}' for line in fastening_lines(points)),
         '',
     ]
     between: str = '\n' + ' ' * first.column

@@ -7,9 +7,11 @@ from pathlib import Path
 
 import yaml
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.files import write_text, written
 from trawl_ros.core.resources import packaged
+from trawl_ros.gear.boards import FasteningRecord
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.gear.rigging import ENDS
@@ -25,6 +27,14 @@ NUMBER_FORMAT = '.12g'
 
 ROUNDING_TOLERANCE = 0.01
 """Greatest difference between a number in the file and its value."""
+
+
+def fastening_lines(points: FloatArray) -> tuple[str, ...]:
+    """Return the lines of fastening points (3, 3) of warp, upper and lower bridle, m."""
+    return tuple(
+        f'{name}: [{", ".join(f"{x:.{WRITTEN_DECIMALS}f}" for x in point)}]'
+        for name, point in zip(FasteningRecord.model_fields, points, strict=True)
+    )
 
 
 def changed_values(old: GearRecord, new: GearRecord) -> dict[Key, float]:

@@ -9,7 +9,7 @@ from math import pi
 
 import numpy as np
 
-from trawl_ros.gear.boards import CORRECTIONS, plate_inertia
+from trawl_ros.gear.boards import CORRECTIONS, FasteningRecord, plate_inertia
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord, cut_slope
 from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.records import GearRecord
@@ -299,7 +299,7 @@ def _board(gear: GearRecord) -> Iterator[GearFinding]:
                 f'found {found:g}, expected about that of a plate, {usual[name]:.4g}',
             )
     points = board.fastening
-    for name in ('warp_m', 'upper_bridle_m', 'lower_bridle_m'):
+    for name in FasteningRecord.model_fields:
         x, _, z = getattr(points, name)
         if abs(x) > 0.75 * board.chord_m or abs(z) > 0.75 * board.span_m:
             yield GearFinding(

@@ -1,6 +1,7 @@
 """Files of receivers of net sensors: what is a reading, what is held, and what is a false pulse."""
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from trawl_ros.bags.logs.draft import draft_mapping
 from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.bags.logs.layout import BadRow, LogRow
 from trawl_ros.bags.logs.mapping import load_mapping
-from trawl_ros.bags.logs.probe_files import count_readings, format_of, read_probe_rows
+from trawl_ros.bags.logs.probe_files import NO_ANSWER, format_of, read_probe_rows
 from trawl_ros.bags.reader import Bag
 from trawl_ros.cli.main import trawl
 from trawl_ros.core.errors import LogError
@@ -69,6 +70,14 @@ def written(folder, text, name='log.txt'):
     path = folder / name
     path.write_text(text)
     return path
+
+
+def count_readings(rows):
+    """Return by column how many readings are new, and how many of them gave no value."""
+    cells = [item for row in rows if isinstance(row, LogRow) for item in row.cells.items()]
+    new = Counter(name for name, text in cells if text)
+    missing = Counter(name for name, text in cells if text == NO_ANSWER)
+    return {name: (new[name], missing[name]) for name, _ in cells}
 
 
 def samples(bag, topic):

@@ -47,7 +47,7 @@ class Promise:
     @property
     def makes(self) -> set[str]:
         """Files and folders that it leaves, by their names in the command."""
-        copies = re.findall(r'^cp (?:-r )?\S+ (\S+)$', self.title)
+        copies = re.findall(r'^(?:cp (?:-r )?|trawl gear copy )\S+ (\S+)$', self.title)
         return set(re.findall(MAKES, self.title)) | set(copies)
 
     @property

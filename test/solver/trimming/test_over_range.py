@@ -170,10 +170,10 @@ def test_half_a_wish_is_refused(options: list[str]) -> None:
 
 
 def test_a_tension_without_spread_and_depth_is_refused() -> None:
-    options = ['--attack', '20', '--inclination', '10', '--tension-kn', '150']
+    options = ['--attack', '20', '--inclination', '10', '--tension', '150']
     result = CliRunner().invoke(trawl, ['trim', 'krill_800', *options])
     assert result.exit_code == 2
-    assert '--tension-kn' in result.output
+    assert '--tension' in result.output
 
 
 def test_the_command_prints_points_and_what_they_give(

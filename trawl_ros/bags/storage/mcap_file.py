@@ -186,7 +186,10 @@ class McapFile:
         if not magic:
             raise BagError(f'{self.path}: the file is empty; expected an MCAP file')
         if magic != MCAP0_MAGIC:
-            raise BagError(f'{self.path}: starts with {magic!r}; expected an MCAP file')
+            raise BagError(
+                f'{self.path}: starts with {magic!r}; expected an MCAP file, or for another '
+                'kind of log a mapping: trawl import-log LOG --draft writes one'
+            )
         with suppress(*DAMAGE):
             header = next(parse_records(stream.read(_HEADER_BYTES)))
             self._library = header.library if isinstance(header, Header) else ''

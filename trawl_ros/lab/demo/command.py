@@ -289,6 +289,12 @@ def _traffic(monitor: 'Monitor', folder: DemoFolder) -> TopicCounts:
     )
 
 
+def topics_of_channels(bag: Path) -> list[str]:
+    """Return the topics of a bag that the identification reads; not every ship has every sensor."""
+    read = {absolute(channel.topic) for channel in CHANNELS.values()}
+    return [entry.topic for entry in summarise(bag).topics if entry.topic in read]
+
+
 def _replay(
     processes: Processes,
     monitor: 'Monitor',
@@ -297,9 +303,6 @@ def _replay(
 ) -> None:
     """Replay the instrument topics of the bag to the identification, and let it finish."""
     path = str(scenario.path)
-    read = {absolute(channel.topic) for channel in CHANNELS.values()}
-    # Not every ship has every sensor.
-    topics = [entry.topic for entry in summarise(folder.bag).topics if entry.topic in read]
     processes.start(
         'identification_node',
         use_sim_time=True,
@@ -313,7 +316,7 @@ def _replay(
         'bag_player',
         bag=str(folder.bag),
         rate=0.0,
-        topics=topics,
+        topics=topics_of_channels(folder.bag),
         wait_for=['identification_node'],
     )
     with ProgressDisplay(error_console()) as display:

@@ -57,7 +57,7 @@ class ShortTows:
     gear: str = 'kaifuha'
     mesh: MeshResolution = COARSE
     tows: tuple[PlannedTow, ...] = FULL_PLAN.tows[:5]
-    log_error_m_s: float = 0.45
+    log_error_m_s: float = 0.55
     seed: int = 1
 
     @property

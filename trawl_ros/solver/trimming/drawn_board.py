@@ -168,7 +168,7 @@ def fastened_as(gear: GearRecord, other: GearRecord) -> GearRecord:
 
 def with_fastening(gear: GearRecord, points: FloatArray) -> GearRecord:
     """Return the gear with other fastening points (3, 3) of warp, upper and lower bridle, m."""
-    names = 'warp_m', 'upper_bridle_m', 'lower_bridle_m'
+    names = FasteningRecord.model_fields
     holes = {name: tuple(point) for name, point in zip(names, points.tolist(), strict=True)}
     fastening = FasteningRecord.model_validate(holes)
     board = gear.board.model_copy(update={'fastening': fastening})
