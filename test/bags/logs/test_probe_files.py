@@ -1,6 +1,7 @@
 """Files of receivers of net sensors: what is a reading, what is held, and what is a false pulse."""
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from trawl_ros.bags.logs.draft import draft_mapping
 from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.bags.logs.layout import BadRow, LogRow
 from trawl_ros.bags.logs.mapping import load_mapping
-from trawl_ros.bags.logs.probe_files import count_readings, format_of, read_probe_rows
+from trawl_ros.bags.logs.probe_files import NO_ANSWER, format_of, read_probe_rows
 from trawl_ros.bags.reader import Bag
 from trawl_ros.cli.main import trawl
 from trawl_ros.core.errors import LogError
@@ -108,6 +109,14 @@ def test_the_day_of_a_tow_goes_on_at_midnight_and_false_pulses_are_left_out(tmp_
 def test_held_values_are_no_readings_and_errors_are_missing(form, column, wanted, tmp_path):
     rows, _ = read_probe_rows(written(tmp_path, FILES[form]), form)
     assert count_readings(rows)[column] == wanted
+
+
+def count_readings(rows):
+    """New readings by column, and those of them that gave no value."""
+    cells = [(name, text) for row in rows for name, text in row.cells.items()]
+    new = Counter(name for name, text in cells if text)
+    missing = Counter(name for name, text in cells if text == NO_ANSWER)
+    return {name: (new[name], missing[name]) for name, _ in cells}
 
 
 def test_a_line_that_cannot_be_read_is_named(tmp_path):

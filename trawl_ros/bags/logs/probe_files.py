@@ -263,15 +263,3 @@ def _blank_false_pulses(rows: _Rows) -> Counter[str]:
 
 def _is_number(text: str) -> bool:
     return bool(re.fullmatch(r'-?[\d.]+', text))
-
-
-def count_readings(rows: list[LogRow | BadRow]) -> dict[str, tuple[int, int]]:
-    """Return by column how many readings are new, and how many of them gave no value."""
-    new: Counter[str] = Counter()
-    missing: Counter[str] = Counter()
-    for row in rows:
-        if isinstance(row, LogRow):
-            for name, text in row.cells.items():
-                new[name] += bool(text)
-                missing[name] += text == NO_ANSWER
-    return {name: (count, missing[name]) for name, count in new.items()}

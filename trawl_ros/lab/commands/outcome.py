@@ -37,9 +37,3 @@ def print_reached(rows: Sequence[MeasuredValue], report: Path) -> None:
     """Print how many targets are reached, and where the report is."""
     asked = [row for row in rows if row.target is not None]
     click.echo(f'{sum(row.ok for row in asked)} of {len(asked)} targets are reached: {report}')
-
-
-def print_outcome(rows: Sequence[MeasuredValue], report: Path) -> None:
-    """Print the targets that are missed, and how many are reached."""
-    print_missed(rows, error_console())
-    print_reached(rows, report)
