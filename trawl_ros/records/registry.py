@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of the registry: a topic, its sensor, and the numbers that the sensor reports.
 
-`trawl_ros.records.topics` and `trawl_ros.records.samples` hold the rows.
+`trawl_ros.records.topics` and `trawl_ros.records.sensors` hold the rows.
 """
 
 import math
