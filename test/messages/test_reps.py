@@ -20,7 +20,7 @@ from trawl_ros.records.frames import (
     echo_sounder_mount,
 )
 from trawl_ros.records.registry import DOOR_FRAMES, MAP, ODOM, SONAR, VESSEL, with_numbers
-from trawl_ros.records.samples import SENSORS
+from trawl_ros.records.sensors import SENSORS
 from trawl_ros.records.topics import COMMANDS, ESTIMATES, INSTRUMENTS, TOPICS, TRUTH, TWINS
 
 STAMPED = [row for row in (*TRUTH, *INSTRUMENTS, *TWINS, *COMMANDS) if row.frame]

@@ -15,7 +15,6 @@ from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.registry import changed, with_numbers
 from trawl_ros.records.samples import (
-    INSTRUMENTS,
     AttitudeSample,
     FixSample,
     HeadingSample,
@@ -28,6 +27,7 @@ from trawl_ros.records.samples import (
     VelocitySample,
     WinchSample,
 )
+from trawl_ros.records.sensors import INSTRUMENTS
 from trawl_ros.records.topics import TOPICS
 
 STAMP = 1_785_000_000_123_456_789

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from studies.kept import KeptTrials, TaskT, TrialT
+from trawl_ros.cli.console.progress import error_console
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, ignore
-from trawl_ros.lab.commands.outcome import print_outcome, stoppable
+from trawl_ros.lab.commands.outcome import print_missed, print_reached, stoppable
 from trawl_ros.lab.report.machine import cpu_model, software
 from trawl_ros.lab.report.measured import MeasuredValue, TargetRange, at_least, at_most, between
 from trawl_ros.lab.report.page import Page, Section, write_page
@@ -220,7 +221,7 @@ def main(study: Study[PlanT], words: Sequence[str]) -> None:
     """Run a study from the command line; Ctrl-C keeps the trials made so far."""
     given = parser(study).parse_args(words)
     if given.rows is not None:
-        print_outcome(render(study, given.rows, given.out), given.out / f'{study.page}.md')
+        _print(render(study, given.rows, given.out), given.out / f'{study.page}.md')
         return
     own = {
         name: value
@@ -232,4 +233,9 @@ def main(study: Study[PlanT], words: Sequence[str]) -> None:
     with stoppable(f'the trials made so far are kept in {given.out}') as (display, _):
         work = Work(given.out, display, given.scheduler, given.workers, shard, given.force)
         rows = run_study(study, plan, work)
-    print_outcome(rows, given.out / f'{study.page}.md')
+    _print(rows, given.out / f'{study.page}.md')
+
+
+def _print(rows: Sequence[MeasuredValue], report: Path) -> None:
+    print_missed(rows, error_console())
+    print_reached(rows, report)

@@ -21,7 +21,8 @@ import numpy as np
 from trawl_ros.core.arrays import BoolArray, FloatArray, StampArray
 from trawl_ros.core.stamps import CONFIRMING_READINGS, lasting, when
 from trawl_ros.core.time import SECOND
-from trawl_ros.records.samples import SENSORS, Sample
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.sensors import SENSORS
 
 JUDGED_READINGS = 60
 """Number of readings that are judged together; rare oddities are faults and no second source."""

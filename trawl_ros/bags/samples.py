@@ -29,11 +29,6 @@ class SampleStream:
     estimate from both would describe neither. A bag whose clock stands still or was set back is
     refused too.
 
-    A bag that does not begin after the one before is moved in time to follow it: tows stay
-    apart, whatever their clocks said. Samples whose stamp cannot be are left out and counted. A
-    bag with two sources on one topic is refused: which of them is right cannot be known, and an
-    estimate of both would be of neither; so is one whose clock stands still or was set back.
-
     Attributes
     ----------
     topics

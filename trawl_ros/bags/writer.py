@@ -8,7 +8,6 @@ Equal messages give equal bytes: clock, machine and path do not enter.
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
 
 from trawl_ros.bags.storage.mcap_output import COMPRESSIONS, McapOutput
 from trawl_ros.bags.storage.metadata import FILE_NAME, FileEntry, TopicEntry, dump_metadata
@@ -193,12 +192,7 @@ class BagWriter:
     def __enter__(self) -> 'BagWriter':
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         # A recording up to an error is worth as much as without one.
         self.close()
 

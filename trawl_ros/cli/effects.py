@@ -6,7 +6,7 @@ import click
 from rich.console import Console
 
 from trawl_ros.cli.console.tables import output_console, plain_table
-from trawl_ros.effects.base.effect import Effect, Parameter
+from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.registry import catalogue
 
 
@@ -31,7 +31,9 @@ def _print(effect: Effect, console: Console) -> None:
     console.print(f'  {effect.sentence}', soft_wrap=True)
     table = plain_table('   parameter', 'unit', 'not there', 'from', 'to', right=('not there',))
     for parameter in effect.parameters:
-        table.add_row(f'   {parameter.name}', parameter.unit or '–', *map(_number, _of(parameter)))
+        numbers = parameter.neutral, parameter.low, parameter.high
+        cells = (f'{number:g}' for number in numbers)
+        table.add_row(f'   {parameter.name}', parameter.unit or '–', *cells)
     if effect.parameters:
         console.print(table)
     console.print(f'  Shown by {effect.excited_by}.', soft_wrap=True)
@@ -42,11 +44,3 @@ def _print(effect: Effect, console: Console) -> None:
     if effect.confused_with:
         console.print(f'  Easily confused with {", ".join(effect.confused_with)}.', soft_wrap=True)
     console.print()
-
-
-def _of(parameter: Parameter) -> tuple[float, float, float]:
-    return parameter.neutral, parameter.low, parameter.high
-
-
-def _number(value: float) -> str:
-    return f'{value:g}'

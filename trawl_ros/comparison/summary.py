@@ -191,7 +191,7 @@ def sensors_of(
         )
         mean = _compared(rows, column, by_state.mean(axis=0))
         sensors.append(ComparedSensor(name, unit, mean, fractions, trends))
-        # Time is left out of the vector: a drift of a sensor is no matter of the boards.
+        # Row 0 is the mean. Time is left out: the drift of a sensor says nothing about the boards.
         kept = [0, *(1 + i for i, axis in enumerate(axes) if axis != 'time')]
         weights.append(full[kept])
         names += [name] * len(kept)
@@ -222,7 +222,10 @@ def _axes(states: list[ComparedState]) -> dict[str, FloatArray]:
 
 
 def _slope(values: FloatArray) -> FloatArray:
-    """Return weights (s,) of the slope of a line of least squares, per std of the axis."""
+    """Return weights (s,) of the slope of a line of least squares, per std of the axis.
+
+    With z = (x - mean x) / std x, the slope of y over z is Σ z y / s.
+    """
     away = values - values.mean()
     slope: FloatArray = away / np.sqrt(np.mean(away**2)) / len(values)
     return slope

@@ -48,11 +48,3 @@ def _is_address(host: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def free_port() -> int:
-    """Return a TCP port of this machine at which nobody listens."""
-    with socket.socket() as probe:
-        probe.bind((THIS_MACHINE, 0))
-        port: int = probe.getsockname()[1]
-    return port

@@ -29,7 +29,7 @@ def door_tilt(orientation: FloatArray) -> tuple[float, float]:
     relative to gravity and do not depend on the heading.
     """
     x, y, z, w = np.asarray(orientation, dtype=float) / np.linalg.norm(orientation)
-    # An inclinometer measures the vertical in its own axes.
+    # An inclinometer measures the vertical in its own axes: the last row of the rotation matrix.
     up = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
     return math.atan2(-up[0], math.hypot(up[1], up[2])), math.atan2(up[1], up[2])
 
@@ -41,6 +41,7 @@ def off_axis(doors: Doors) -> float:
     for door, way, outward in zip(
         doors, (starboard - port, port - starboard), _OUTWARD, strict=True
     ):
+        # The door's y axis: the second column of its rotation matrix.
         x, y, z, w = door.orientation
         sideways = np.array([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)])
         cosine = -outward * float(sideways @ way) / float(np.linalg.norm(way))

@@ -29,7 +29,8 @@ from trawl_ros.instruments.errors.records import (
 from trawl_ros.instruments.errors.timing import Sent, Timed
 from trawl_ros.instruments.sonar.records import SweepRecord
 from trawl_ros.records.registry import Sensor
-from trawl_ros.records.samples import INSTRUMENTS, Sample
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.sensors import INSTRUMENTS
 
 BASE = 'base'
 

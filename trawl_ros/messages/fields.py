@@ -23,12 +23,7 @@ def fields_of(message: Any) -> Iterator[tuple[Any, str]]:
             yield message, name
 
 
-def not_finite(message: Any) -> set[str]:
-    """Return the names of the fields that hold a number that is not finite."""
-    return beyond(message, math.inf)
-
-
-def beyond(message: Any, most: float, *, unknown: bool = False) -> set[str]:
+def beyond(message: Any, most: float = math.inf, *, unknown: bool = False) -> set[str]:
     """Return the names of the fields that hold a number above ``most`` or not finite.
 
     With ``unknown``, numbers that are not finite mean an unknown value and are allowed.

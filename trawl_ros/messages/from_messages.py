@@ -20,7 +20,6 @@ from trawl_ros.messages.point_clouds import read_point_cloud
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.records.registry import Sensor, changed, with_numbers
 from trawl_ros.records.samples import (
-    SENSORS,
     FixSample,
     Sample,
     SchoolsSample,
@@ -29,6 +28,7 @@ from trawl_ros.records.samples import (
     SonarScanSample,
     WinchSample,
 )
+from trawl_ros.records.sensors import SENSORS
 
 Row = Sensor[Sample]
 

@@ -14,7 +14,6 @@ from trawl_ros.messages.pieces import UNKNOWN_VARIANCE, TopicMessage
 from trawl_ros.messages.point_clouds import point_cloud
 from trawl_ros.records.registry import Sensor
 from trawl_ros.records.samples import (
-    SENSORS,
     FixSample,
     PressureSample,
     RangeSample,
@@ -26,6 +25,7 @@ from trawl_ros.records.samples import (
     VelocitySample,
     WinchSample,
 )
+from trawl_ros.records.sensors import SENSORS
 
 Row = Sensor[Sample]
 

@@ -30,7 +30,8 @@ from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Names, Number, Spec, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER, STREAM
 from trawl_ros.records import topics
-from trawl_ros.records.samples import INSTRUMENTS, Sample
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.sensors import INSTRUMENTS
 from trawl_ros.records.surroundings import Surroundings
 from trawl_ros.scenario.scenario import load_scenario
 from trawl_ros.scenario.sea import build_surroundings

@@ -110,18 +110,18 @@ class BagMessages:
         on_progress: OnProgress = ignore,
         stopped: Callable[[], bool] = lambda: False,
     ) -> bool:
-        """Return each message to a function.
+        """Pass each message to a function.
 
         Parameters
         ----------
         take
-            Takes a message; where it raises `MessageError`, the message is left out and counted.
+            Takes a message. If it raises `MessageError`, the message is left out and counted.
         all_of
-            Topics of which all messages are given; of others those that are due.
+            Topics of which all messages are passed on; of others only those that are due.
         on_progress
             Called as messages are read.
         stopped
-            Asked now and then; where it says yes, the rest is left out.
+            Asked now and then; True leaves out the rest.
 
         Returns
         -------

@@ -18,7 +18,8 @@ from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_from_messages import winch_truth
 from trawl_ros.plots.bag_messages import BagMessages, TowMessage
 from trawl_ros.plots.records import Kind, Quantities, Series, TowHistory
-from trawl_ros.records.samples import INSTRUMENTS, SENSORS, Sample
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.sensors import INSTRUMENTS, SENSORS
 from trawl_ros.records.truth import SIDES
 
 NOT_DRAWN = ('sonar/bottom', 'vessel/echo_sounder/depth', 'vessel/echo_sounder/school')

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 from trawl_ros.records.registry import Channel as Channel
 from trawl_ros.records.registry import Field, with_numbers
-from trawl_ros.records.samples import INSTRUMENTS, SENSORS, Sample
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.sensors import INSTRUMENTS, SENSORS
 from trawl_ros.records.truth import SIDES
 
 INPUTS = ('port_length', 'starboard_length', 'speed')

@@ -18,7 +18,8 @@ from trawl_ros.core.quantity import Quantity, check_quantity, check_unit, in_si
 from trawl_ros.core.schema import Record
 from trawl_ros.core.units import UNITS
 from trawl_ros.records.registry import Sensor, changed, with_numbers
-from trawl_ros.records.samples import INSTRUMENTS, SENSORS, Sample
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.sensors import INSTRUMENTS, SENSORS
 
 _COMPASS: dict[str, dict[str, str]] = {
     'vessel/velocity_ground': {'speed': 'speed', 'compass_course': 'angle'},

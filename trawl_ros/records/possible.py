@@ -5,7 +5,8 @@
 import math
 from collections.abc import Mapping
 
-from trawl_ros.records.samples import SENSORS, Sample
+from trawl_ros.records.samples import Sample
+from trawl_ros.records.sensors import SENSORS
 
 COMPASS_DEG = (-180.0, 360.0)
 """Range of compass angles: loggers write 0 to 360 or -180 to 180."""

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of the registry: a topic, its sensor, and the numbers that the sensor reports.
 
-`trawl_ros.records.topics` and `trawl_ros.records.samples` hold the rows.
+`trawl_ros.records.topics` and `trawl_ros.records.sensors` hold the rows.
 """
 
 import math
@@ -103,10 +103,10 @@ class Channel:
     min_rate
         Lowest rate (Hz) at which the instrument may report.
     delay
-        A window takes this channel's readings from as long (s) before its own start and end. A
-        steady state does not care, and so a window can be decided at its end though the reading
-        that closes it comes late: a period at the lowest rate, the time on its way, and 2 s for
-        readings that overtake each other.
+        A window takes this channel's readings from this long (s) before its own start and end. So
+        a window can be decided at its end although the last reading comes late, and a steady state
+        is the same at both times. It is a period at the lowest rate, the time on the way, and 2 s
+        for readings that overtake each other.
     required
         Without it no window is made.
     lively

@@ -4,7 +4,7 @@
 
 Names are relative; a node in namespace ``trawl`` turns ``truth/winch`` into ``/trawl/truth/winch``.
 ``/clock`` and ``/diagnostics`` are absolute by ROS convention. Rows of instruments are in
-`trawl_ros.records.samples`.
+`trawl_ros.records.sensors`.
 """
 
 from trawl_ros.records.registry import DOOR_FRAMES as DOOR_FRAMES
@@ -15,9 +15,9 @@ from trawl_ros.records.registry import SONAR as SONAR
 from trawl_ros.records.registry import VESSEL as VESSEL
 from trawl_ros.records.registry import WINCH_NAMES as WINCH_NAMES
 from trawl_ros.records.registry import Topic as Topic
-from trawl_ros.records.samples import INSTRUMENTS as INSTRUMENTS
 from trawl_ros.records.samples import PICTURES as PICTURES
 from trawl_ros.records.samples import RANGES as RANGES
+from trawl_ros.records.sensors import INSTRUMENTS as INSTRUMENTS
 from trawl_ros.records.truth import SIDES
 
 _SIM = ('sim_node',)

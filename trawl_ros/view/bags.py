@@ -47,7 +47,7 @@ class TowBags(BagMessages):
         on_progress: OnProgress,
         stopped: Callable[[], bool] = lambda: False,
     ) -> bool:
-        """Return all that is to be shown to a log, in the order of log times.
+        """Show the tow in a log, in the order of log times.
 
         Parameters
         ----------

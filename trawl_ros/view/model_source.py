@@ -17,19 +17,17 @@ from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.predict import Prediction
 from trawl_ros.view.records import Note
 
-ALL = 1_000_000
-"""Options for windows: an estimate needs two windows of a steady state, a view shows all."""
+MAX_WINDOWS_PER_STATE = 1_000_000
+"""No limit in practice: an estimate needs two windows of a steady state, a view shows all."""
 
 NAMES = {'vertical_opening': 'opening_height'}
-"""Observables by the names of `plots.records.TowHistory`, if they differ."""
+"""Observables with another name in `plots.records.TowHistory`, and that name."""
 
 
 class ModelFollower:
     """Steady states of a gear at the warp lengths and speeds of a tow.
 
     Between steady windows the gear is in motion, and the model predicts nothing.
-
-    A tow in motion has none: between steady windows the model says nothing.
 
     Parameters
     ----------
@@ -38,7 +36,7 @@ class ModelFollower:
     """
 
     def __init__(self, gear: GearRecord) -> None:
-        self._finder = finder_for(gear, WindowOptions(max_windows_per_state=ALL))
+        self._finder = finder_for(gear, WindowOptions(max_windows_per_state=MAX_WINDOWS_PER_STATE))
         self._predictor = predictor_for(gear)
         self._name = gear.name
         self._last: Equilibrium | None = None

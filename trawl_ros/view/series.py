@@ -21,8 +21,6 @@ HEADING = 'heading'
 FAR_RANGE_RATIO = 3.0
 """An axis leaves outliers out if all readings need this many times the height of the others."""
 
-_DEPTHS = ('port_door_depth', 'starboard_door_depth', 'net_depth')
-
 
 def _panels() -> tuple[Panel, ...]:
     """Panels of the histories in pictures; depths share one, with the seabed in it."""

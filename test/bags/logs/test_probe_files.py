@@ -119,6 +119,14 @@ def test_held_values_are_no_readings_and_errors_are_missing(form, column, wanted
     assert count_readings(rows)[column] == wanted
 
 
+def count_readings(rows):
+    """New readings by column, and those of them that gave no value."""
+    cells = [(name, text) for row in rows for name, text in row.cells.items()]
+    new = Counter(name for name, text in cells if text)
+    missing = Counter(name for name, text in cells if text == NO_ANSWER)
+    return {name: (new[name], missing[name]) for name, _ in cells}
+
+
 def test_a_line_that_cannot_be_read_is_named(tmp_path):
     path = written(tmp_path, NOTUS.replace('C24S,23:59:01', 'C24S,23:xx:01'))
     with pytest.raises(LogError, match=r'log\.txt: line 9: expected code'):

@@ -13,7 +13,7 @@ from rclpy.subscription import Subscription
 
 from endurance.hostile_messages.mutations import hostile_bytes
 from trawl_ros.messages.cdr import deserialize
-from trawl_ros.messages.fields import not_finite
+from trawl_ros.messages.fields import beyond
 from trawl_ros.nodes.runtime.connected_node import DIAGNOSTICS
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.records.topics import find_topic
@@ -196,7 +196,7 @@ def unsound(message: Any) -> set[str]:
 
     An infinite range is a distance beyond what the sensor can measure.
     """
-    found = not_finite(message)
+    found = beyond(message)
     return found - {RANGE} if math.isinf(getattr(message, 'range', 0.0)) else found
 
 

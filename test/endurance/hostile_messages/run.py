@@ -1,6 +1,7 @@
 """Study of hostile messages: every subscription of every node, each node in this process."""
 
 import json
+import socket
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -27,7 +28,7 @@ from endurance.hostile_messages.attack import (
     examples_of,
 )
 from endurance.long_tow import write_coarse_gear, write_long_tow
-from trawl_ros.core.network import THIS_MACHINE, free_port
+from trawl_ros.core.network import THIS_MACHINE
 from trawl_ros.core.progress import OnProgress, ignore, step_counter
 from trawl_ros.core.resources import share_path
 from trawl_ros.estimation.fit.estimate import Estimate
@@ -179,6 +180,14 @@ def _estimates(stamp: int) -> list[TopicMessage]:
         innovation_message(stamp, [ChannelInnovation('door_spread', 0.1, 0.3, 0.3)]),
         *((name, statuses) for name in (STATUS, FINDINGS, TRIAL_STATUS, DIAGNOSTICS)),
     ]
+
+
+def free_port() -> int:
+    """Return a TCP port of this machine at which nobody listens."""
+    with socket.socket() as probe:
+        probe.bind((THIS_MACHINE, 0))
+        port: int = probe.getsockname()[1]
+    return port
 
 
 def _nodes(folder: Path, gear: str) -> list[tuple[Kind, dict[str, Any]]]:

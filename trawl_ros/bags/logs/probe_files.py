@@ -30,8 +30,15 @@ TIME = 'time'
 NEIGHBOURS = 5
 """Readings on either side from whose median a jump is measured."""
 
-LEAST_JUMP_M = 1.5
-"""Least jump of a slant range that can be a false pulse, m."""
+MIN_JUMP_M = 1.5
+"""Smallest jump of a slant range that can be a false pulse, m."""
+
+MAX_SUM_RATIO, MAX_SUM_M = 0.3, 0.5
+"""Largest sum of the jumps of range and data for which they count as opposite: a ratio of the jump,
+and m."""
+
+SCANMAR_NO_READING = 998.0
+"""Value that Scanmar writes without a reading."""
 
 _STAMP = '%Y-%m-%d %H:%M:%S'
 
@@ -202,7 +209,7 @@ def _netmind(lines: list[str], rows: _Rows) -> None:
 
 
 def _scanmar_scd(lines: list[str], rows: _Rows) -> None:
-    """Read quoted pieces; 998 is no reading, and a question mark is no sensor."""
+    """Read quoted pieces; a question mark as status means that there is no sensor."""
     value = r'\s*(-?[\d.]+)'
     row = re.compile(
         r'"(\d{4}-\d\d-\d\d)""(\d\d:\d\d:\d\d)""([NS][\d:.]+)""([EW][\d:.]+)"'
@@ -217,10 +224,11 @@ def _scanmar_scd(lines: list[str], rows: _Rows) -> None:
             rows.bad(number, 'quoted date, time and position, and the columns of SCD')
             continue
         cells = {'Latitude': match[3].replace(':', ' '), 'Longitude': match[4].replace(':', ' ')}
+        # Name of a sensor, and the groups of `row` with its reading and its status.
         for name, at, status in (
             ('DI1', 7, 9), ('CL1', 10, 13), ('TO1', 14, 16), ('CS1', 17, 18), ('TM1', 19, 21)
         ):  # fmt: skip
-            read = NO_ANSWER if float(match[at]) == 998.0 else match[at]
+            read = NO_ANSWER if float(match[at]) == SCANMAR_NO_READING else match[at]
             cells[name] = '' if match[status] == '?' else read
         rows.add(number, when, cells)
 
@@ -255,7 +263,8 @@ def _blank_false_pulses(rows: _Rows) -> Counter[str]:
         for at, own in enumerate(cells):
             near = values[max(0, at - NEIGHBOURS) : at + NEIGHBOURS + 1]
             jump, opposite = values[at] - np.median(near, axis=0)
-            if abs(jump) > LEAST_JUMP_M and abs(jump + opposite) < 0.3 * abs(jump) + 0.5:
+            largest_sum = MAX_SUM_RATIO * abs(jump) + MAX_SUM_M
+            if abs(jump) > MIN_JUMP_M and abs(jump + opposite) < largest_sum:
                 own.update(dict.fromkeys(names, ''))
                 found[place] += 1
     return found

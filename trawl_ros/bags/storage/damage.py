@@ -39,31 +39,38 @@ from trawl_ros.core.limits import RECOVERED_CHANNELS, RECOVERED_RECORDS
 from trawl_ros.messages.cdr import STORE
 from trawl_ros.records.topics import find_topic
 
-_FIRST_PRIVATE = 0x80
-_WINDOW = 1 << 20
+_FIRST_PRIVATE_OPCODE = 0x80
+_SEARCHED_BYTES = 1 << 20
+"""Size of the part of a file that is searched at once."""
 
 # Opcode, length, two times, size, checksum, compression, length of the compressed records.
 # Lengths stay below 4 GB, so their upper halves are zero.
 _CHUNK_HEADER = re.compile(
     rb'\x06(.{4})\0{4}.{16}.{4}\0{4}.{4}(\x04\0{3}zstd|\x03\0{3}lz4|\0{4})(.{4})\0{4}', re.DOTALL
 )
-_LONGEST_HEADER = 57
-_BEFORE_COMPRESSION = 28
+_LONGEST_HEADER_BYTES = 57
+_FIXED_HEADER_BYTES = 28
+"""Bytes of a chunk after its length and before the name of its compression."""
+
 _INDEX_HEAD = struct.Struct('<HI')
+"""Channel of a message index, and the number of bytes of its entries."""
 
 # Opcode, length, one or two numbers, and a length before a type's or topic's name.
 _DESCRIPTION = re.compile(
     rb'(?=(\x03(.{4})\0{4}.{2}.{3}\0[A-Za-z]|\x04(.{4})\0{4}.{4}.{3}\0/))', re.DOTALL
 )
-_MOST_DESCRIPTION_BYTES = 1 << 20
+_MAX_DESCRIPTION_BYTES = 1 << 20
 _TAIL_BYTES = 16 << 20
-_SALVAGE_STEP = 1 << 10
+"""Size of the end of a file that is searched for descriptions, for the summary repeats them."""
+
+_SALVAGE_STEP_BYTES = 1 << 10
+"""Number of bytes that are unpacked at once from a damaged chunk: the last step is lost."""
 
 _SAMPLES = 16
 """Number of messages that identify a channel."""
 
 _SAMPLE_BYTES = 1 << 22
-"""Bytes of such messages after which no more are used."""
+"""Number of bytes of such messages after which no more are used."""
 
 
 def scan_records(
@@ -86,7 +93,7 @@ def scan_records(
         stream.seek(offset)
         opcode, inner = RECORD_START.unpack(stream.read(RECORD_START.size))
         length = RECORD_START.size + inner
-        known = 0 < opcode <= Opcode.DATA_END or opcode >= _FIRST_PRIVATE
+        known = 0 < opcode <= Opcode.DATA_END or opcode >= _FIRST_PRIVATE_OPCODE
         if known and offset + length <= size and _fits(stream, opcode, offset, inner):
             yield opcode, offset, length
             if opcode == Opcode.DATA_END:
@@ -111,7 +118,7 @@ def next_chunk(stream: BinaryIO, offset: int, size: int) -> int | None:
     """Find the next offset at which a chunk's header starts; None if there is none."""
     while offset < size:
         stream.seek(offset)
-        window = stream.read(_WINDOW)
+        window = stream.read(_SEARCHED_BYTES)
         place = 0
         while header := _CHUNK_HEADER.search(window, place):
             start = offset + header.start()
@@ -120,7 +127,7 @@ def next_chunk(stream: BinaryIO, offset: int, size: int) -> int | None:
                 return start
             place = header.start() + 1
         # Windows overlap, so that a header across two of them is found too.
-        offset += _WINDOW - _LONGEST_HEADER
+        offset += _SEARCHED_BYTES - _LONGEST_HEADER_BYTES
     return None
 
 
@@ -128,8 +135,8 @@ def _fits(stream: BinaryIO, opcode: int, offset: int, inner: int) -> bool:
     """True if a record's length agrees with the lengths of its own parts."""
     if opcode == Opcode.CHUNK:
         stream.seek(offset)
-        header = _CHUNK_HEADER.match(stream.read(_LONGEST_HEADER))
-        # A chunk too large to be opened is passed by its length, and said by who opens it.
+        header = _CHUNK_HEADER.match(stream.read(_LONGEST_HEADER_BYTES))
+        # A chunk that is too large is passed here; whoever opens it reports it.
         return inner > MAX_CHUNK_BYTES or (header is not None and _chunk_fits(header, inner))
     if opcode == Opcode.MESSAGE_INDEX:
         head = stream.read(_INDEX_HEAD.size)
@@ -142,7 +149,7 @@ def _fits(stream: BinaryIO, opcode: int, offset: int, inner: int) -> bool:
 
 def _chunk_fits(header: re.Match[bytes], inner: int) -> bool:
     records = int.from_bytes(header[3], 'little')
-    return inner == _BEFORE_COMPRESSION + len(header[2]) + 8 + records
+    return inner == _FIXED_HEADER_BYTES + len(header[2]) + 8 + records
 
 
 def find_copies(stream: BinaryIO, pieces: Iterable[Piece]) -> dict[Piece, Piece]:
@@ -217,7 +224,7 @@ def recover(
         claims.pop(topic, None)
     found: defaultdict[int, list[Recovered]] = defaultdict(list)
     for channels in claims.values():
-        # A number may be what is damaged.
+        # With two numbers for one topic, one of them may be damaged.
         if len(channels) > 1:
             continue
         ((number, channel),) = channels.items()
@@ -326,7 +333,7 @@ def find_descriptions(data: bytes, seen: set[bytes]) -> Iterator[Description]:
     for place in _DESCRIPTION.finditer(data):
         length = RECORD_START.size + int.from_bytes(place[2] or place[3], 'little')
         raw = data[place.start() : place.start() + length]
-        if length > _MOST_DESCRIPTION_BYTES or len(raw) < length or raw in seen:
+        if length > _MAX_DESCRIPTION_BYTES or len(raw) < length or raw in seen:
             continue
         builder = RecordBuilder()
         try:
@@ -357,7 +364,7 @@ def salvage(record: bytes) -> bytes:
             else unpacker(chunk.data)
         )
         left = min(chunk.uncompressed_size, MAX_CHUNK_BYTES)
-        while left > 0 and (piece := unpack.read(min(left, _SALVAGE_STEP))):
+        while left > 0 and (piece := unpack.read(min(left, _SALVAGE_STEP_BYTES))):
             pieces.append(piece)
             left -= len(piece)
     except (*DAMAGE, EOFError):

@@ -37,9 +37,3 @@ def print_missed(rows: Iterable[MeasuredValue], console: Console) -> None:
 def print_reached(rows: Sequence[MeasuredValue], report: Path) -> None:
     """Print how many targets are reached, and where the report is."""
     click.echo(f'{reached_in_words(rows)} {report}'.strip())
-
-
-def print_outcome(rows: Sequence[MeasuredValue], report: Path) -> None:
-    """Print the targets that are missed, and how many are reached."""
-    print_missed(rows, error_console())
-    print_reached(rows, report)

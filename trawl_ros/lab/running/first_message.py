@@ -3,7 +3,6 @@
 """Subscriber that waits for the first message on a topic."""
 
 import time
-from types import TracebackType
 from typing import Any
 
 import rclpy
@@ -52,12 +51,7 @@ class FirstMessage:
             self.spin(0.05)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._executor.remove_node(self._listener)
         self._listener.destroy_node()
         self._executor.shutdown()

@@ -11,7 +11,6 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from types import TracebackType
 
 from trawl_ros.cli.console.interruption import Uninterrupted
 from trawl_ros.core.errors import TrawlError
@@ -157,12 +156,7 @@ class Processes:
     def __enter__(self) -> 'Processes':
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         # Whoever is impatient shortens what is left to them, but leaves none of them behind.
         with Uninterrupted(self._hasten):
             self._deadline = time.monotonic() + END_S

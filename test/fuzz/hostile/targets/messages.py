@@ -18,7 +18,7 @@ from trawl_ros.bags.storage.stored import Definition
 from trawl_ros.core.errors import MessageError
 from trawl_ros.messages import commands, diagnostics, estimates, from_messages, truth_from_messages
 from trawl_ros.messages.cdr import STORE, deserialize, serialize
-from trawl_ros.messages.fields import not_finite
+from trawl_ros.messages.fields import beyond
 from trawl_ros.records.topics import TOPICS, WINCH_NAMES
 
 FILE = 'message'
@@ -86,7 +86,7 @@ def read_message(given: Path, results: Path) -> None:
     topic, data = (given / FILE).read_bytes().split(b'\n', 1)
     name = topic.decode()
     message = deserialize(data, TOPICS[name].type)
-    not_finite(message)
+    beyond(message)
     refused = None
     for read in _readers(name):
         try:

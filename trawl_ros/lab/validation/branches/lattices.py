@@ -53,7 +53,7 @@ def speed_lattice(model: GearModel, lengths: Sequence[float], speeds: Sequence[f
         for i, length in enumerate(lengths)
         for j, speed in enumerate(speeds)
     }
-    return _walked('speed through the water (m/s)', lengths, speeds, places, SPEED)
+    return _continued('speed through the water (m/s)', lengths, speeds, places, SPEED)
 
 
 def angle_lattice(
@@ -70,10 +70,10 @@ def angle_lattice(
         for i, length in enumerate(lengths)
         for j in range(len(degrees))
     }
-    return _walked(f'installation angle {angle} (°)', lengths, degrees, places, 0.0)
+    return _continued(f'installation angle {angle} (°)', lengths, degrees, places, 0.0)
 
 
-def _walked(
+def _continued(
     across: str,
     lengths: Sequence[float],
     columns: Sequence[float],
@@ -86,7 +86,7 @@ def _walked(
     return Lattice(across, lengths, columns, continue_branches(places, first, cold))
 
 
-LOOKS: dict[Verdict, tuple[str, str]] = {
+VERDICT_STYLES: dict[Verdict, tuple[str, str]] = {
     'usable': ('#7fbf7b', 'usable: stable, under water, within the law'),
     'unstable': ('#fdd49e', 'refused: unstable'),
     'surfaced': ('#9ecae1', 'refused: gear breaks the surface'),
@@ -122,7 +122,7 @@ def angle_figure(lattices: Sequence[Lattice]) -> Figure:
 
 def draw_map(axes: Axes, lattice: Lattice) -> None:
     """Colour each place by its verdict, and write the attack angle if there is a root."""
-    kinds = list(LOOKS)
+    kinds = list(VERDICT_STYLES)
     shape = len(lattice.lengths), len(lattice.columns)
     codes = np.array(
         [[kinds.index(lattice.at(i, j).verdict) for j in range(shape[1])] for i in range(shape[0])]
@@ -131,7 +131,7 @@ def draw_map(axes: Axes, lattice: Lattice) -> None:
         np.arange(shape[1] + 1) - 0.5,
         np.arange(shape[0] + 1) - 0.5,
         codes,
-        cmap=ListedColormap([LOOKS[kind][0] for kind in kinds]),
+        cmap=ListedColormap([VERDICT_STYLES[kind][0] for kind in kinds]),
         norm=BoundaryNorm(np.arange(len(kinds) + 1) - 0.5, len(kinds)),
         edgecolors='white',
         linewidth=0.5,
@@ -151,7 +151,7 @@ def _legend(figure: Figure, lattices: Sequence[Lattice]) -> None:
     figure.legend(
         handles=[
             Patch(facecolor=colour, label=name)
-            for kind, (colour, name) in LOOKS.items()
+            for kind, (colour, name) in VERDICT_STYLES.items()
             if kind in seen
         ],
         loc='outside lower center',

@@ -19,8 +19,8 @@ from trawl_ros.lab.validation.branches.continuation import SAME_ROOT_M, Verdict,
 from trawl_ros.lab.validation.branches.facts import branch_checks, smoothness_checks
 from trawl_ros.lab.validation.branches.lattices import (
     ANGLES,
-    LOOKS,
     SPEED,
+    VERDICT_STYLES,
     Lattice,
     angle_figure,
     angle_lattice,
@@ -361,7 +361,7 @@ def _overturned(model: GearModel, good: Equilibrium) -> MeasuredValue:
 
 
 def _counts(speeds: Lattice, angles: Sequence[Lattice]) -> TextTable:
-    kinds: list[Verdict] = list(LOOKS)
+    kinds: list[Verdict] = list(VERDICT_STYLES)
     rows = []
     for name, lattice in zip(('speed', *ANGLES), (speeds, *angles), strict=True):
         counted = Counter(answer.verdict for answer in lattice.answers.values())

@@ -8,8 +8,6 @@ from dataclasses import dataclass, replace
 from trawl_ros.lab.report.measured import MeasuredValue
 from trawl_ros.lab.report.page import TextTable
 
-Expected = float | tuple[float, float]
-
 
 @dataclass(frozen=True)
 class Claim:
