@@ -210,6 +210,28 @@ def test_hauling_is_no_peak_to_give_way_to(model):
     assert tow.lengths[-1] == pytest.approx([480.0, 480.0], abs=0.5)
 
 
+def test_winches_that_move_warp_across_as_well_are_hauled_to_the_end_together(model):
+    tow = Tow(model, (333.0, 327.0), 2.3, AutotrawlSettings())
+    tow.autotrawl.set_lengths(303.0, 297.0)
+    tow.go(4)
+    hauled = -np.diff(tow.lengths, axis=0)
+    last = [np.flatnonzero(side > 0.5 * hauled.max())[-1] for side in hauled.T]
+    assert abs(last[0] - last[1]) <= 1
+    # Doors that slow down one after the other fall.
+    doors = [door.position for door in tow.simulation.truth().doors]
+    assert np.linalg.norm(doors[0] - doors[1]) > 110.0
+    assert min(door[2] for door in doors) > -75.0
+
+
+def test_a_slow_winch_arrives_while_it_moves_warp_across(model):
+    settings = replace(BALANCE, max_speed=0.05)
+    tow = Tow(model, (503.0, 497.0), 2.3, settings)
+    tow.autotrawl.set_lengths(502.0, 496.0)
+    tow.go(1.5)
+    assert tow.states[-1].set_lengths == (502.0, 496.0)
+    assert abs(np.diff([state.wanted for state in tow.states], axis=0)).max() <= 0.0251
+
+
 def test_a_set_tension_below_the_present_one_pays_out_to_the_bound_and_says_so(model):
     settings = AutotrawlSettings(tension=150e3, max_give_m=3.0)
     tow = Tow(model, (500.0, 500.0), 2.3, settings).go(3)

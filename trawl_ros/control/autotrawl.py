@@ -4,7 +4,9 @@
 
 A wanted length is the sum of four parts, each bounded:
 
-- the *set length*, approached at the speed of the winch after a change;
+- the *set length*, approached after a change at what the other parts leave of the winch's speed. A
+  winch that lags behind its wanted length stops later than the other, and doors that slow down one
+  after the other fall;
 - the *counter's part*, which slowly brings the counters to the set lengths: in mode ``lengths``
   each winch on its own, in mode ``tension`` the mean of both;
 - the *balance*, in mode ``tension``: an integral of the difference in tension, paid out on one side
@@ -141,6 +143,7 @@ class Autotrawl:
         self.settings = settings
         self._target = lengths
         self._set = list(lengths)
+        self._pace = 0.0
         self._wanted = lengths
         self._parts = [0.0, 0.0]
         self._balance = 0.0
@@ -189,12 +192,13 @@ class Autotrawl:
         dt = self._time_since(sample.stamp)
         self._bounds = {}
         self._look(sample, dt)
-        self._approach_set_lengths(dt)
+        before = self._wanted
         self._follow_counters(dt)
         if self.settings.mode == 'tension':
             self._balance_tensions(dt)
             self._give_way(dt)
-        before = self._wanted
+        moved = max(abs(self._sum(side) - before[side]) for side in (0, 1))
+        self._approach_set_lengths(dt, moved)
         self._wanted = self._sum(0), self._sum(1)
         self._travel += max(abs(a - b) for a, b in zip(self._wanted, before, strict=True))
         return self._wanted
@@ -237,14 +241,24 @@ class Autotrawl:
                     self._means[side] = LowPass(OPTIONS.mean_filter_s)
                 self._means[side].take(self._smooth[side].value, dt)
 
-    def _approach_set_lengths(self, dt: float) -> None:
-        most = self.settings.max_speed * dt
-        for side in (0, 1):
-            self._set[side] += _within(self._target[side] - self._set[side], most)
-        if self._set != list(self._target):
-            self._at_rest_s = 0.0
-        else:
+    def _approach_set_lengths(self, dt: float, moved: float) -> None:
+        """Move both set lengths so that they arrive together, as fast as both winches can follow.
+
+        ``moved`` is how far the other parts have moved a wanted length in ``dt``, m.
+        """
+        left = [self._target[side] - self._set[side] for side in (0, 1)]
+        furthest = max(map(abs, left))
+        if not furthest:
+            self._pace = 0.0
             self._at_rest_s += dt
+            return
+        self._at_rest_s = 0.0
+        gain = self.settings.max_acceleration * dt
+        braking = math.sqrt(2.0 * self.settings.max_acceleration * furthest)
+        self._pace = min(self._pace + gain, self.settings.max_speed, braking)
+        step = min(self._pace * dt, max(self.settings.max_speed * dt - moved, 0.0), furthest)
+        for side in (0, 1):
+            self._set[side] += left[side] * step / furthest
 
     def _follow_counters(self, dt: float) -> None:
         """Integrate the counters' deviation, only while the warps stand still."""
@@ -274,7 +288,8 @@ class Autotrawl:
         if math.isnan(difference):
             return
         rate = self.settings.balance_gain * _beyond(difference, self.settings.balance_dead_band)
-        rate = _within(rate, OPTIONS.balance_max_speed)
+        # Half of the winch's speed is left for the set lengths.
+        rate = _within(rate, min(OPTIONS.balance_max_speed, 0.5 * self.settings.max_speed))
         most = 0.5 * self.settings.max_difference * 0.5 * sum(self._set)
         self._balance = self._bounded('balance', self._balance + rate * dt, most)
 
