@@ -72,14 +72,6 @@ def written(folder, text, name='log.txt'):
     return path
 
 
-def count_readings(rows):
-    """Return by column how many readings are new, and how many of them gave no value."""
-    cells = [item for row in rows if isinstance(row, LogRow) for item in row.cells.items()]
-    new = Counter(name for name, text in cells if text)
-    missing = Counter(name for name, text in cells if text == NO_ANSWER)
-    return {name: (new[name], missing[name]) for name, _ in cells}
-
-
 def samples(bag, topic):
     found = Bag(bag).messages([f'/trawl/{topic}'])
     return [to_sample(topic, one.message) for one in found]
