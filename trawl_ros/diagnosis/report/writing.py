@@ -79,14 +79,11 @@ def _gain(diagnosis: Diagnosis) -> str:
 
 def _error_rows(holdout: HoldoutComparison) -> Iterator[tuple[str, ...]]:
     """Yield name, and errors on held-out tows in the unit of the field, of each sensor."""
+    repaired, other = (one.rms if one else {} for one in (holdout.after, holdout.placebo))
     for name, before in holdout.before.rms.items():
         unit, factor = FIELD_UNITS[CHANNELS[name].unit]
-        errors = (
-            holdout.before.expected[name],
-            before,
-            holdout.after and holdout.after.rms.get(name),
-            holdout.placebo and holdout.placebo.rms.get(name),
-        )
+        expected = holdout.before.expected[name]
+        errors = expected, before, repaired.get(name), other.get(name)
         space = '' if unit == '°' else ' '
         cells = ('–' if one is None else f'{factor * one:.2f}{space}{unit}' for one in errors)
         yield name.replace('_', ' '), *cells
