@@ -8,10 +8,16 @@ import pytest
 from endurance.robustness.changed_values import changed, numbers, tow_outcome
 from endurance.robustness.random_commands import commanded_hour
 from endurance.robustness.rows import Outcome, changed_gear, hour_rows, random_hour, value_rows
+from endurance.robustness.winch_manoeuvres import (
+    MANOEUVRES,
+    SPEEDS_M_S,
+    lets_fall,
+    manoeuvre_rows,
+)
 from endurance.table import FULL
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.trials.linearised_plant import MeshResolution
-from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.observables import fallen_boards
 from trawl_ros.model.rotations import about_axis
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
@@ -92,3 +98,12 @@ def test_hours_of_random_commands_are_towed_to_their_end(show) -> None:
     rows = hour_rows([random_hour(gear, seed) for seed in range(100 if FULL else 3)])
     show('Hours of random commands', rows)
     assert [row.what for row in rows if not row.ok] == []
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(0 if FULL else 400)
+def test_boards_stand_when_both_winches_stop_together_up_to_2_5_m_s(show) -> None:
+    model = build_model(MeshResolution(24 if FULL else 12).model('kaifuha'))
+    show('Winch manoeuvres straight ahead', manoeuvre_rows(model, SPEEDS_M_S if FULL else (2.2,)))
+    hauling = MANOEUVRES[0]
+    assert not any(lets_fall(model, hauling, 300.0, speed) for speed in (1.6, 2.2, 2.5))

@@ -1,0 +1,71 @@
+"""Winch manoeuvres from a steady tow straight ahead, and whether a board falls."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from trawl_ros.lab.report.measured import MeasuredValue
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.observables import fallen_boards
+from trawl_ros.simulation.command import Command
+from trawl_ros.simulation.simulation import Simulation
+
+SPEEDS_M_S = 1.6, 1.9, 2.2, 2.5, 2.8
+LENGTHS_M = 300.0, 600.0
+PERIOD_S, AFTER_S = 0.25, 300.0
+"""Half of the solver's step, and how long the boards are watched after the last command, s."""
+
+
+@dataclass(frozen=True)
+class Manoeuvre:
+    """Commands to the winches, each with the time (s) to the next one.
+
+    Attributes
+    ----------
+    name
+        Name in the table.
+    changes
+        Changes of the port and starboard warp (m) from the length at the start, and s to the next.
+    """
+
+    name: str
+    changes: tuple[tuple[float, float, float], ...]
+
+
+MANOEUVRES = (
+    Manoeuvre('haul 100 m', ((-100.0, -100.0, 255.0),)),
+    Manoeuvre('pay out 100 m', ((100.0, 100.0, 255.0),)),
+    Manoeuvre('haul 100 m, one winch 10 s longer', ((-104.0, -100.0, 265.0),)),
+    Manoeuvre('haul, then pay out at once', ((-60.0, -60.0, 120.0), (40.0, 40.0, 260.0))),
+    Manoeuvre(
+        'haul, pay out two minutes after the stop', ((-48.0, -48.0, 245.0), (40.0, 40.0, 230.0))
+    ),
+)
+
+
+def lets_fall(model: GearModel, manoeuvre: Manoeuvre, length: float, speed: float) -> bool:
+    """Return True if a board falls during a manoeuvre or in `AFTER_S` behind it."""
+    simulation = Simulation(model, Command(length, length, speed), period=PERIOD_S)
+    *before, (port, starboard, duration) = manoeuvre.changes
+    for port_change, starboard_change, seconds in (*before, (port, starboard, duration + AFTER_S)):
+        simulation.command = replace(
+            simulation.command,
+            port_length=length + port_change,
+            starboard_length=length + starboard_change,
+        )
+        for step in range(round(seconds / PERIOD_S)):
+            state = simulation.advance().motion.state
+            if not step % 20 and any(fallen_boards(state)):
+                return True
+    return False
+
+
+def manoeuvre_rows(model: GearModel, speeds: Sequence[float]) -> list[MeasuredValue]:
+    """Rows of all manoeuvres: in how many of the tows a board falls, and in which."""
+    tows = [(length, speed) for length in LENGTHS_M for speed in speeds]
+    rows = []
+    for manoeuvre in MANOEUVRES:
+        fell = [tow for tow in tows if lets_fall(model, manoeuvre, *tow)]
+        where = ', '.join(f'{length:g} m at {speed:g} m/s' for length, speed in fell)
+        what = f'{manoeuvre.name}: tows of {len(tows)} in which a board fell'
+        rows.append(MeasuredValue(what, len(fell), note=where))
+    return rows
