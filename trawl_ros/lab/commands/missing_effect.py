@@ -9,6 +9,7 @@ import click
 
 from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.cli.options import FILE, FOLDER, FORCE_OPTION
+from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.lab.commands.outcome import stoppable
 from trawl_ros.lab.missing_effect.answering import METHODS, answer_trials
@@ -85,8 +86,12 @@ def score(
         empty_folder(out, force=force)
     trials, truth = read_trials(folder), read_key(folder, key)
     methods = {}
-    for path in answers:
+    for path in dict.fromkeys(answers):
         own = read_answers(path, trials)
+        if own.method in methods:
+            raise TrawlError(
+                f'{path}: method: found {own.method} again, expected a name that no other file has'
+            )
         methods[own.method] = cases_of(truth, own)
     table = comparison_table(methods)
     shown = plain_table(*table.head, wrapped=('what',))
