@@ -25,7 +25,7 @@ def folder_of(tmp_path):
     return folder
 
 
-def test_answers_are_scored_beside_each_other_with_a_report(run, tmp_path):
+def test_answers_of_two_methods_are_scored_and_compared_in_a_report(run, tmp_path):
     folder = folder_of(tmp_path)
     files = []
     for name in ('mine', 'other'):

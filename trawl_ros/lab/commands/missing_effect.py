@@ -41,7 +41,7 @@ def command() -> None:
     help='Steady windows of linearised states; bags of such states; bags of tows in time.',
 )  # fmt: skip
 def make(out: Path, seed: int, trials: int, gear: str, form: Form) -> None:
-    """Make blind trials in the folder OUT, and their key in a file beside it.
+    """Make blind trials in the folder OUT, and their key in a file next to it.
 
     A call with more trials goes on where an earlier one ended.
     """
@@ -75,13 +75,13 @@ def answer(folder: Path, out: Path, methods: Sequence[str]) -> None:
 @command.command('score')
 @click.argument('folder', type=FOLDER)
 @click.argument('answers', nargs=-1, required=True, type=FILE)
-@click.option('--key', type=FILE, help='Key of the trials; by default the file beside FOLDER.')
+@click.option('--key', type=FILE, help='Key of the trials; by default the file next to FOLDER.')
 @click.option('--out', type=FOLDER, help='Folder of a report on the first file of ANSWERS.')
 @FORCE_OPTION
 def score(
     folder: Path, answers: Sequence[Path], key: Path | None, out: Path | None, force: bool
 ) -> None:
-    """Score files of ANSWERS to the trials in FOLDER, and print them beside each other."""
+    """Score files of ANSWERS to the trials in FOLDER, and print a column for each."""
     if out is not None:
         empty_folder(out, force=force)
     trials, truth = read_trials(folder), read_key(folder, key)

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Report of scores: methods beside each other, reliability, and pairs that are confused."""
+"""Report of scores: a column for each method, reliability, and pairs that are confused."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
