@@ -25,7 +25,7 @@ def folder_of(tmp_path):
     return folder
 
 
-def test_answers_are_scored_beside_each_other_with_a_report(run, tmp_path):
+def test_answers_of_two_methods_are_scored_and_compared_in_a_report(run, tmp_path):
     folder = folder_of(tmp_path)
     files = []
     for name in ('mine', 'other'):
@@ -39,6 +39,10 @@ def test_answers_are_scored_beside_each_other_with_a_report(run, tmp_path):
     assert 'mine' in (tmp_path / 'report' / 'missing_effect.md').read_text()
     again = run('missing-effect', 'score', folder, *files, '--out', tmp_path / 'report')
     assert again.exit_code == 1
+    (tmp_path / 'copy.json').write_text(files[0].read_text())
+    twice = run('missing-effect', 'score', folder, *files, tmp_path / 'copy.json')
+    assert twice.exit_code == 1
+    assert 'mine again' in twice.output
 
 
 def test_a_wrong_file_of_answers_ends_with_one_sentence(run, tmp_path):

@@ -110,6 +110,7 @@ def test_a_hundred_trials_without_a_wrong_name_certify_a_cut_and_fifty_do_not(tr
     assert [(own.cut, own.wrong) for own in tested][-1] == (0.97, 1)
     assert certified_cut([right] * 99 + [wrong], OPTIONS) == 0.98
     assert tested[0].bound == pytest.approx(0.0295, abs=1e-4)
+    assert (tested[0].needed, tested[-1].needed) == (99, 157)
 
 
 def test_pairs_that_are_confused_are_listed_with_the_likeliest_first(truth):

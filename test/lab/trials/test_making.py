@@ -104,7 +104,7 @@ def test_what_tips_the_gear_over_is_neither_towed_nor_detectable(plant):
         gear=lambda size, model, at: heavy.gear(1.5, model, at) if size > 0.3 else model,
         shown=lambda size, shown, at: shown | {'door_spread': shown['door_spread'] + 1e-3 * size},
     )  # fmt: skip
-    assert likely.detectable(hidden, 1.0, beside_catalogue=False) == np.inf
+    assert likely.detectable(hidden, 1.0, after_catalogue=False) == np.inf
 
 
 def test_swapped_doors_are_there_or_not():

@@ -9,6 +9,7 @@ import click
 
 from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.cli.options import FILE, FOLDER, FORCE_OPTION
+from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.lab.commands.outcome import stoppable
 from trawl_ros.lab.missing_effect.answering import METHODS, answer_trials
@@ -40,7 +41,7 @@ def command() -> None:
     help='Steady windows of linearised states; bags of such states; bags of tows in time.',
 )  # fmt: skip
 def make(out: Path, seed: int, trials: int, gear: str, form: Form) -> None:
-    """Make blind trials in the folder OUT, and their key in a file beside it.
+    """Make blind trials in the folder OUT, and their key in a file next to it.
 
     A call with more trials goes on where an earlier one ended.
     """
@@ -74,19 +75,23 @@ def answer(folder: Path, out: Path, methods: Sequence[str]) -> None:
 @command.command('score')
 @click.argument('folder', type=FOLDER)
 @click.argument('answers', nargs=-1, required=True, type=FILE)
-@click.option('--key', type=FILE, help='Key of the trials; by default the file beside FOLDER.')
+@click.option('--key', type=FILE, help='Key of the trials; by default the file next to FOLDER.')
 @click.option('--out', type=FOLDER, help='Folder of a report on the first file of ANSWERS.')
 @FORCE_OPTION
 def score(
     folder: Path, answers: Sequence[Path], key: Path | None, out: Path | None, force: bool
 ) -> None:
-    """Score files of ANSWERS to the trials in FOLDER, and print them beside each other."""
+    """Score files of ANSWERS to the trials in FOLDER, and print a column for each."""
     if out is not None:
         empty_folder(out, force=force)
     trials, truth = read_trials(folder), read_key(folder, key)
     methods = {}
-    for path in answers:
+    for path in dict.fromkeys(answers):
         own = read_answers(path, trials)
+        if own.method in methods:
+            raise TrawlError(
+                f'{path}: method: found {own.method} again, expected a name that no other file has'
+            )
         methods[own.method] = cases_of(truth, own)
     table = comparison_table(methods)
     shown = plain_table(*table.head, wrapped=('what',))

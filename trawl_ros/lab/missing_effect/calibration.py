@@ -4,6 +4,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 from scipy.stats import binom, binomtest
@@ -74,13 +75,38 @@ class ReliabilityBin:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Test of a cut: wrong names of so many trials, and the upper bound of their rate."""
+    """Test of a cut.
+
+    Attributes
+    ----------
+    cut
+        The cut.
+    wrong, number
+        Number of trials with a wrong name, and of all trials.
+    bound
+        Upper bound of the rate of wrong names.
+    needed
+        Number of trials that certify the cut with as many wrong names.
+    """
 
     cut: float
     wrong: int
     number: int
     bound: float
-    holds: bool
+    needed: int
+
+    @property
+    def holds(self) -> bool:
+        """True if the cut is certified."""
+        return self.number >= self.needed
+
+    def __str__(self) -> str:
+        text = f'{self.cut:g}: {self.wrong} of {self.number} wrong, rate at most {self.bound:.2%}, '
+        return text + (
+            'certified'
+            if self.holds
+            else f'not certified; that takes {self.needed} trials with {self.wrong} wrong'
+        )
 
 
 def claims(truth: TruthRecord, answer: AnswerRecord) -> dict[str, Claim]:
@@ -169,9 +195,13 @@ def certificates(cases: Sequence[Case], options: CalibrationOptions) -> tuple[Ce
     for cut in options.cuts if cases else ():
         wrong = sum(is_wrong_at(case, cut) for case in cases)
         ends = binomtest(wrong, len(cases)).proportion_ci(2.0 * options.confidence - 1.0, 'exact')
-        holds = binom.cdf(wrong, len(cases), options.most_wrong) <= 1.0 - options.confidence
-        found.append(Certificate(cut, wrong, len(cases), float(ends.high), bool(holds)))
-        if not holds:
+        needed = next(
+            number
+            for number in count(wrong + 1)
+            if binom.cdf(wrong, number, options.most_wrong) <= 1.0 - options.confidence
+        )
+        found.append(Certificate(cut, wrong, len(cases), float(ends.high), needed))
+        if not found[-1].holds:
             break
     return tuple(found)
 

@@ -44,7 +44,7 @@ class HypothesisRecord(Record):
 
 
 class TrialsRecord(Record):
-    """Content of ``trials.json``, all that a method may read beside the data.
+    """Content of ``trials.json``, all that a method may read, except the data.
 
     Attributes
     ----------

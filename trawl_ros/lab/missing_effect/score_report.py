@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Report of scores: methods beside each other, reliability, and pairs that are confused."""
+"""Report of scores: a column for each method, reliability, and pairs that are confused."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -29,6 +29,9 @@ from trawl_ros.report.style import FAINT, MEASURED, quiet
 
 COMPARED = ('Names', 'Probabilities', 'Sizes and repairs')
 """Sections whose rows are compared between methods."""
+
+FIGURE_COLUMNS = 3
+"""Largest number of reliability diagrams next to each other."""
 
 
 def cases_of(key: KeyRecord, answers: AnswersRecord) -> list[Case]:
@@ -78,9 +81,13 @@ def reliability_figure(
     methods: Mapping[str, Sequence[Case]], options: CalibrationOptions
 ) -> Figure:
     """Draw stated probability against the share that is right, with exact 95 % intervals."""
-    figure = Figure(figsize=(2.9 * len(methods) + 0.6, 3.4), layout='constrained')
-    axes = figure.subplots(1, len(methods), sharey=True, squeeze=False)[0]
-    for own, (name, cases) in zip(axes, methods.items(), strict=True):
+    columns = min(FIGURE_COLUMNS, len(methods))
+    rows = -(-len(methods) // columns)
+    figure = Figure(figsize=(2.9 * columns + 0.6, 3.1 * rows + 0.3), layout='constrained')
+    axes = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
+    for own in axes[len(methods) :]:
+        own.set_visible(False)
+    for own, (name, cases) in zip(axes, methods.items(), strict=False):
         found = [likeliest(case) for case in with_probabilities(cases)]
         own.plot([0.0, 1.0], [0.0, 1.0], color=FAINT, linewidth=1.0)
         for part in reliability(found, options):
@@ -91,10 +98,11 @@ def reliability_figure(
                 f'{part.number}', (part.mean, part.right / part.number), (-4, 4),
                 textcoords='offset points', ha='right', fontsize=8,
             )  # fmt: skip
-        own.set(xlim=(0.0, 1.03), ylim=(-0.03, 1.06), xlabel='stated probability', title=name)
+        own.set(xlim=(0.0, 1.03), ylim=(-0.03, 1.06), title=name)
         own.title.set_fontsize(9)
         quiet(own)
-    axes[0].set_ylabel('share that is right')
+    figure.supxlabel('stated probability', fontsize=10)
+    figure.supylabel('share that is right', fontsize=10)
     return figure
 
 

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Folder of blind trials: made, and read by a method; the key is a file beside it."""
+"""Folder of blind trials: made, and read by a method; the key is a file next to it."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -59,7 +59,7 @@ class TrialInput:
 
 
 def key_file(folder: Path) -> Path:
-    """Return the file with the key of a folder of trials, beside it."""
+    """Return the file with the key of a folder of trials, next to it."""
     return folder.with_name(f'{folder.name}_key.json')
 
 
@@ -77,7 +77,7 @@ def make_trials(
     Parameters
     ----------
     folder
-        Folder of the trials; the key is written beside it.
+        Folder of the trials; the key is written next to it.
     seed, gear
         Seed of all draws, and gear file or its name.
     trials
@@ -164,7 +164,7 @@ def truth_of(key: Key) -> TruthRecord:
 
 
 def write_key(folder: Path, key: KeyRecord) -> None:
-    """Write the key beside the folder, and in the folder what a method may see."""
+    """Write the key next to the folder, and in the folder what a method may see."""
     write_json(key_file(folder), key.model_dump(mode='json'), indent=1)
     tows = PLANS[drawn_spec(key.seed, 0).plan]
     names = tuple(f'tow_{number:02}' for number in range(1, len(tows.tows) + 1))

@@ -96,7 +96,7 @@ def hide(spec: Spec, gear: str, cut: MeshResolution, seed: int) -> SeededTrial:
     # Two at once are each as strong as if it were alone.
     outside = spec.series == 'outside'
     detectable = tuple(
-        likely.detectable(hidden, sign, beside_catalogue=outside)
+        likely.detectable(hidden, sign, after_catalogue=outside)
         for hidden, sign in zip(drawn, spec.signs, strict=True)
     )
     sizes = tuple(

@@ -58,14 +58,14 @@ class Likelihood:
     fit: Fit
     plan: BlindTrialPlan
 
-    def detectable(self, hidden: Hidden, sign: float, *, beside_catalogue: bool) -> float:
+    def detectable(self, hidden: Hidden, sign: float, *, after_catalogue: bool) -> float:
         """Smallest size that is detected in 80 % of trials, infinite if no possible one is.
 
         Parameters
         ----------
         hidden, sign
             The effect, and to which side.
-        beside_catalogue
+        after_catalogue
             True if what the best effect of the catalogue could mimic does not count.
 
         Returns
@@ -78,7 +78,7 @@ class Likelihood:
         size, low, high, enough = min(hidden.probe, most), 0.0, np.inf, np.inf
         for _ in range(MAX_PROBES):
             try:
-                seen = self._sigmas(hidden, sign * size, beside_catalogue)
+                seen = self._sigmas(hidden, sign * size, after_catalogue)
             except NoSteadyState:
                 high, size = size, 0.5 * (low + size)
                 continue
@@ -97,7 +97,7 @@ class Likelihood:
         # Beyond what is too small to be seen the gear cannot be towed, or it is that strong.
         return float(enough)
 
-    def _sigmas(self, hidden: Hidden, size: float, beside_catalogue: bool) -> float:
+    def _sigmas(self, hidden: Hidden, size: float, after_catalogue: bool) -> float:
         """Strength of an effect in standard deviations."""
         changed = self.plant.towed([(hidden, size)], self.plan)
         rows = [OBSERVABLES.index(name) for name in SENSED_CHANNELS]
@@ -107,7 +107,7 @@ class Likelihood:
         ]
         chosen = {part.window.index for part in self.fit.windows}
         columns = [own for number, own in enumerate(columns) if number in chosen]
-        if not beside_catalogue:
+        if not after_catalogue:
             return float(np.sqrt(self._information(columns).information[0, 0]))
         mimics = self._mimics
         both = [np.hstack((own, other)) for own, other in zip(columns, mimics, strict=True)]
