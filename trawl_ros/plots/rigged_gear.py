@@ -11,8 +11,9 @@ from trawl_ros.gear.catch import CatchBody
 from trawl_ros.model.assembly import points_of
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.kite import LiftingBodies
-from trawl_ros.model.observables import Observables, observe
+from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
+from trawl_ros.records.observables import Observables
 from trawl_ros.report import style
 from trawl_ros.solver.first_guess import first_guess
 from trawl_ros.solver.operating_point import OperatingPoint, steady_tow

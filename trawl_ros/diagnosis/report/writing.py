@@ -84,8 +84,8 @@ def _error_rows(holdout: HoldoutComparison) -> Iterator[tuple[str, ...]]:
         errors = (
             holdout.before.expected[name],
             before,
-            holdout.after and holdout.after.rms.get(name),
-            holdout.placebo and holdout.placebo.rms.get(name),
+            None if holdout.after is None else holdout.after.rms.get(name),
+            None if holdout.placebo is None else holdout.placebo.rms.get(name),
         )
         space = '' if unit == '°' else ' '
         cells = ('–' if one is None else f'{factor * one:.2f}{space}{unit}' for one in errors)
