@@ -32,7 +32,7 @@ def test_a_report_is_written_in_three_forms(tmp_path):
     for line in (
         '**It is fast. 1 of 2 targets are reached.**',
         '<summary>0 of 1 targets are reached.</summary>',
-        'It was measured. Made by `trawl study` of trawl_ros',
+        'It was measured.', 'Made by `trawl study` of trawl_ros',
         '| Speed | steps | 5 1/s | ≥ 9 1/s | a <slow> \\| machine |',
         '| what | value | asked for | reached | note |',
         '| steps | 5 1/s | ≥ 9 1/s | **no** | a <slow> \\| machine |',
