@@ -21,6 +21,11 @@ SECTIONS = [
 ]  # fmt: skip
 
 
+def test_a_report_without_an_answer_begins_with_its_first_value(tmp_path):
+    write_page(tmp_path, Page('study', 'A study', 'trawl study', 'It was measured.'), SECTIONS)
+    assert '**Steps: 5 1/s. 1 of 2 targets are reached.**' in (tmp_path / 'study.md').read_text()
+
+
 def test_a_report_is_written_in_three_forms(tmp_path):
     page = Page('study', 'A study', 'trawl study', 'It was measured.', answer='It is fast.')
     rows = write_page(tmp_path / 'out', page, SECTIONS, [Drawing('study', 'All.', Figure())])
