@@ -84,8 +84,8 @@ class Page:
     data
         Name of the JSON file, without its ending; by default as the others.
     answer
-        First sentence of the report, before how many targets are reached; by default the first value
-        that has a target.
+        First sentence of the report, before how many targets are reached; by default the first
+        value that has a target.
     lead
         Name of the section whose first picture is shown at the top; '' for the first that has one.
     """
