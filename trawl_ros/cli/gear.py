@@ -215,7 +215,7 @@ def copy(gear: str, file: Path) -> None:
 @click.option('--speed', required=True, type=SPEED, help='Its speed through the water, m/s.')
 @click.option('--area', type=Number(0.1, 100.0), help='Area of the new plate, m²; else it stays.')
 def set_door(file: Path, door: str, warp: float, speed: float, area: float | None) -> None:
-    """Put a door of the catalogue, or of a file, on the gear in FILE.
+    """Put a door of the catalogue on the gear in FILE, and change FILE.
 
     The command finds shackle points at which the boards have a usable steady state at --warp and
     --speed, and prints what it changed. If it finds none, FILE stays as it is, and the command

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Faults found without any effect: units, a log over ground, frozen sensors, fallen boards."""
+"""Faults that show without any effect: units, log over ground, frozen sensors, fallen boards."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

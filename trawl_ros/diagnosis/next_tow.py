@@ -28,7 +28,7 @@ STATE_MINUTES = 20.0
 """A state takes so long, with what the gear takes to settle."""
 
 TELLING = 10.0
-"""χ² by which one cause must be better than another to exclude it (odds of 150)."""
+"""χ² by which one cause must be better than another to be told from it (odds of 150)."""
 
 WORTH = 1.0
 """Tows of less χ² per hour are not proposed: no weather makes them tell."""
@@ -71,9 +71,9 @@ class Proposal:
             f'{lengths[0]:.0f} m of warp'
         )
         track = ', on the reciprocal track' if self.reciprocal else ''
-        helps = 'should separate' if self.per_hour >= TELLING else 'helps to separate'
+        tells = 'should tell' if self.per_hour >= TELLING else 'helps to tell'
         return (
-            f'Tow {what}{track}: an hour of it {helps} the best effect from its nearest rival '
+            f'Tow {what}{track}: an hour of it {tells} the best effect from its nearest rival '
             f'(χ² {self.per_hour:.1f} more, where {TELLING:g} are enough; so far '
             f'{self.before:.1f}).'
         )
@@ -97,7 +97,7 @@ def propose(
     best, values
         The cause, and its values (m,) as they were found.
     rivals
-        Causes that are to be excluded.
+        Causes from which it is to be told.
 
     Returns
     -------

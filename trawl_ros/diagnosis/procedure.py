@@ -47,7 +47,7 @@ NOWHERE_NEAR, NEAR = 10.0, 3.0
 it below the second."""
 
 RIVALS = 4
-"""Largest number of causes from which the next tow separates the likeliest."""
+"""Largest number of causes from which the next tow tells the likeliest."""
 
 
 def diagnose_windows(
@@ -98,7 +98,7 @@ def diagnose_windows(
         return replace(
             known,
             reason=f'found {len(examined)} steady states to examine, expected at least '
-            f'{FEWEST_STATES}: what does not vary cannot be separated from the boards',
+            f'{FEWEST_STATES}: what does not vary cannot be told from the boards',
         )
     on_progress(_step('fitting the boards'))
     prior = board_prior(gear)

@@ -480,7 +480,7 @@ INSTRUMENTS: tuple[Sensor[Sample], ...] = (
         ),
         ('trial_node',), _witness('yaw_rate', 'vessel/velocity_water', 'rad/s', 1.0, 0.002),
     ),
-    # Velocity over ground only shows whether the log sees the water.
+    # Velocity over ground only tells whether the log sees the water.
     _velocity(
         'ground', MAP, 'GPS: velocity over ground, m/s.',
         (('east', '', _GROUND[0], ''), ('north', '', _GROUND[1], ''), ('up', '', None, '')),

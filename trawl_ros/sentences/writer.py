@@ -85,6 +85,6 @@ class SentenceWriter:
         if row.least_interval_s == 0.0 or self._every_reading:
             return True
         due = self._due.get(key)
-        # A stamp far back is that of a tow that has begun again.
+        # A stamp far back belongs to a tow that has begun again.
         interval = round(row.least_interval_s * SECOND)
         return due is None or not due - 2 * interval < stamp < due

@@ -92,7 +92,7 @@ class GearFollower:
         """Draw truth or readings if it is time and there are no markers."""
         if self._next is None:
             self._next = stamp + round(PATIENCE_S * SECOND)
-        # A stamp far back is that of a tow that has begun again.
+        # A stamp far back belongs to a tow that has begun again.
         if stamp < self._next - self._period - round(PATIENCE_S * SECOND):
             self._next, self._markers = stamp, None
         if stamp < self._next:

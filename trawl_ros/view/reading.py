@@ -257,7 +257,7 @@ class TowReader:
 
     def _is_due(self, topic: str, stamp: int) -> bool:
         due = self._due.get(topic)
-        # A stamp far back is that of a tow that has begun again.
+        # A stamp far back belongs to a tow that has begun again.
         if due is not None and due - round(SLOW_S * SECOND) <= stamp < due:
             return False
         self._due[topic] = stamp + round(SLOW_S * SECOND)

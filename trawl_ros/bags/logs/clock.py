@@ -72,7 +72,7 @@ class Clock(Record):
     def _fits_together(self) -> 'Clock':
         if self.zone is not None:
             if self.utc_offset_h is not None:
-                raise ValueError('zone: found utc_offset_h as well, expected one of them')
+                raise ValueError('zone: found utc_offset_h too, expected one of them')
             try:
                 ZoneInfo(self.zone)
             except (KeyError, ValueError, OSError):

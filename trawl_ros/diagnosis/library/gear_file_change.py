@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Effect that changes numbers at keys of a gear file and rebuilds the gear."""
+"""Effect that changes numbers at keys of a gear file and builds the gear again."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence

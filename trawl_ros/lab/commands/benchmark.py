@@ -47,7 +47,6 @@ def write_benchmark(
         f'threads of BLAS: {blas_threads()}. Times are CPU times of the process, all threads '
         'together, and medians over repeats unless it says that something ran once; where it says '
         'wall, they are wall-clock times, which other work on the machine lengthens.',
-        lead='growth',
     )
     sections = [
         Section(
@@ -55,7 +54,6 @@ def write_benchmark(
             module.findings.rows,
             draw(folder, module.findings.drawings, f'{NAME}/{module.name}_'),
             text=module.findings.text,
-            name=module.name,
             command=f'{COMMAND} {module.name}',
             seconds=module.seconds,
         )

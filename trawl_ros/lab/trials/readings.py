@@ -142,10 +142,9 @@ def steady_windows(
 ) -> tuple[SteadyWindow, ...]:
     """One window of each steady state, as the finder would find it.
 
-    Readings are the plant's observables and inputs with an offset and an error of scale, both
-    drawn again for each tow, an offset drawn again for each state, and noise, a part of which is
-    autoregressive of first order. Mean and its stated error are worked out of the readings as the
-    finder does.
+    Readings are the plant's observables and inputs with an offset and an error of scale for each
+    tow, an offset for each state, and noise, a part of which is autoregressive of first order. Mean
+    and stated error are computed from the readings in the same way as by the finder.
 
     Parameters
     ----------
