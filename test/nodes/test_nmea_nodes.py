@@ -213,7 +213,7 @@ def test_of_two_senders_with_one_name_the_first_is_believed_until_it_is_silent(
     (told,) = [key for key in ship.report('sentences').values if 'another source' in key]
     link = f'udp://:{port} from'
     assert f'door/spread by {link} {other}' in told
-    assert f'another source tells: {link} {THIS_MACHINE} marport' in told
+    assert f'another source gives: {link} {THIS_MACHINE} marport' in told
 
     def believed():
         say(port, 'MPMSD,T,PD,23,XST,m,25.1', host=other)

@@ -97,7 +97,7 @@ def propose(
     best, values
         The cause, and its values (m,) as they were found.
     rivals
-        Causes that are to be excluded.
+        Causes from which it is to be told.
 
     Returns
     -------

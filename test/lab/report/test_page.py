@@ -21,6 +21,11 @@ SECTIONS = [
 ]  # fmt: skip
 
 
+def test_a_report_without_an_answer_begins_with_its_first_value(tmp_path):
+    write_page(tmp_path, Page('study', 'A study', 'trawl study', 'It was measured.'), SECTIONS)
+    assert '**Steps: 5 1/s. 1 of 2 targets are reached.**' in (tmp_path / 'study.md').read_text()
+
+
 def test_a_report_is_written_in_three_forms(tmp_path):
     page = Page('study', 'A study', 'trawl study', 'It was measured.', answer='It is fast.')
     rows = write_page(tmp_path / 'out', page, SECTIONS, [Drawing('study', 'All.', Figure())])
@@ -32,7 +37,7 @@ def test_a_report_is_written_in_three_forms(tmp_path):
     for line in (
         '**It is fast. 1 of 2 targets are reached.**',
         '<summary>0 of 1 targets are reached.</summary>',
-        'It was measured. Made by `trawl study` of trawl_ros',
+        'It was measured.', 'Made by `trawl study` of trawl_ros',
         '| Speed | steps | 5 1/s | ≥ 9 1/s | a <slow> \\| machine |',
         '| what | value | asked for | reached | note |',
         '| steps | 5 1/s | ≥ 9 1/s | **no** | a <slow> \\| machine |',

@@ -215,7 +215,7 @@ def read_information(path: Path) -> Any:
     BagError
         If the file is unreadable, not YAML, or has no such key.
     """
-    hint = 'the .mcap file in that folder can be opened alone'
+    hint = 'the .mcap file beside it can be opened alone'
     with open_file(path, BagError) as stream:
         text = stream.read(METADATA_BYTES.value + 1)
     if len(text) > METADATA_BYTES.value:

@@ -260,7 +260,7 @@ class _Search:
         return float(logsumexp(each)) + around.log_evidence - self.screen.marginal.log_evidence
 
     def beside(self, key: Key) -> tuple[float, Unknown]:
-        """Return the log Bayes factor of a set together with H?, and H?."""
+        """Return the log Bayes factor of a set with H? beside it, and H?."""
         if not key:
             screen = self.screen
             places = range(screen.number, screen.number + len(screen.patterns))

@@ -37,7 +37,6 @@ def write_benchmark(
 ) -> list[MeasuredValue]:
     """Write ``benchmark.json``, ``.md``, ``.html`` and figures into a folder; return the rows."""
     ordered = sorted(measured, key=lambda module: NAMES.index(module.name))
-    first = ordered[0].findings.rows[0]
     versions = ', '.join(f'{name} {version}' for name, version in software().items())
     page = Page(
         name=NAME,
@@ -48,8 +47,6 @@ def write_benchmark(
         f'threads of BLAS: {blas_threads()}. Times are CPU times of the process, all threads '
         'together, and medians over repeats unless it says that something ran once; where it says '
         'wall, they are wall-clock times, which other work on the machine lengthens.',
-        answer=f'{first.what[:1].upper()}{first.what[1:]}: {first.figure}.',
-        lead='growth',
     )
     sections = [
         Section(
@@ -57,7 +54,6 @@ def write_benchmark(
             module.findings.rows,
             draw(folder, module.findings.drawings, f'{NAME}/{module.name}_'),
             text=module.findings.text,
-            name=module.name,
             command=f'{COMMAND} {module.name}',
             seconds=module.seconds,
         )

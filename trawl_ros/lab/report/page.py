@@ -84,7 +84,8 @@ class Page:
     data
         Name of the JSON file, without its ending; by default as the others.
     answer
-        First sentence of the report; after it stands how many targets are reached.
+        First sentence of the report, before how many targets are reached; by default the first
+        value that has a target.
     lead
         Name of the section whose first picture is shown at the top; '' for the first that has one.
     """
@@ -130,7 +131,7 @@ def write_page(
     made_folder(folder)
     write_json(folder / f'{page.data or page.name}.json', content, indent=1, ensure_ascii=False)
     pictures = draw(folder, drawings)
-    verdict = ' '.join(filter(None, (page.answer, reached_in_words(rows))))
+    verdict = ' '.join(filter(None, (page.answer or _first(rows), reached_in_words(rows))))
     filled_in = [section for section in sections if section.rows or section.tables]
     lead, filled_in = _led(filled_in, page.lead)
     for kind, shown in (('md', pictures), ('html', embedded(folder, pictures))):
@@ -154,6 +155,12 @@ def reached_in_words(rows: Sequence[MeasuredValue]) -> str:
     """Return how many targets are reached, as a sentence; '' where there are none."""
     asked = [row for row in rows if row.target is not None]
     return f'{sum(row.ok for row in asked)} of {len(asked)} targets are reached.' if asked else ''
+
+
+def _first(rows: Sequence[MeasuredValue]) -> str:
+    """Return the first value that has a target, as a sentence; '' without one."""
+    first = next((row for row in rows if row.target is not None), None)
+    return '' if first is None else f'{first.what[:1].upper()}{first.what[1:]}: {first.figure}.'
 
 
 def _led(sections: Sequence[Section], name: str) -> tuple[tuple[Picture, ...], list[Section]]:
