@@ -133,18 +133,14 @@ def _difference_figure(comparison: Comparison, units: DisplayUnits) -> Figure:
         for (axis, size), axes in zip(of_axes, row, strict=True):
             for sensor in sensors:
                 states = [s for s in comparison.states if sensor.channel in s.sensors]
-                at = np.array(
-                    [{'warp': s.warp, 'speed': s.inputs[2], 'time': s.hours}[axis] for s in states]
-                )
+                at = np.array([state.axes[axis] for state in states])
                 own = [state.sensors[sensor.channel] for state in states]
-                scale = [
-                    math.pi / 180.0 if angle else max(abs(one.reference), 1e-9) / 100.0
-                    for one in own
-                ]
-                off = np.array([one.difference for one in own]) / scale
-                std = np.array([one.std for one in own]) / scale
-                _points(axes, sensor.channel, at / size, off, std)
-            two = 2.0 * float(np.median(std))
+                off, std, per = np.array(
+                    [(c.difference, c.std, max(abs(c.reference), 1e-9) / 100.0) for c in own]
+                ).T
+                per = math.radians(1.0) if angle else per
+                _points(axes, sensor.channel, at / size, off / per, std / per)
+            two = 2.0 * float(np.median(std / per))
             axes.axhspan(-two, two, color='#eef1f3', zorder=0)
             axes.axhline(0.0, color=FAINT, lw=0.9, zorder=1)
             quiet(axes)

@@ -2,26 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of a comparison: JSON, figures, and a self-contained HTML page."""
 
-from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import numpy as np
+from pydantic_core import to_jsonable_python
 
 from trawl_ros.comparison.comparison import Comparison
 from trawl_ros.comparison.figures import drawings, side_of
 from trawl_ros.comparison.summary import Compared
 from trawl_ros.core.display_units import DisplayUnits, quantity_of
-from trawl_ros.core.files import finite, made_folder, write_json, write_text
+from trawl_ros.core.files import made_folder, write_json, write_text
 from trawl_ros.core.version import __version__
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.report.pictures import draw, embedded
 from trawl_ros.report.rendering import page as filled
 
 PAGE, DATA = 'comparison.html', 'comparison.json'
-
-DERIVED = 'difference', 'fraction', 'scaled'
-"""Derived values of `Compared` that JSON has too."""
 
 OUTSIDE_STD = 3.0
 """Std of its error beyond which a difference is marked."""
@@ -36,8 +32,10 @@ def write_comparison(comparison: Comparison, folder: Path, units: DisplayUnits) 
         If the folder cannot be written to.
     """
     made_folder(folder)
-    whole = {'next_step': comparison.next_step, **_fields(comparison)}
-    write_json(folder / DATA, whole, indent=1)
+    whole = {'next_step': comparison.next_step, **vars(comparison)}
+    # Null where a number does not exist.
+    plain = to_jsonable_python(whole, inf_nan_mode='null', fallback=np.ndarray.tolist)
+    write_json(folder / DATA, plain, indent=1)
     text = filled(
         'trawl_ros.comparison',
         PAGE,
@@ -65,23 +63,3 @@ def cells(channel: str, one: Compared, units: DisplayUnits) -> dict[str, str | b
     }
     shown = {key: text.replace('-', '−') for key, text in found.items()}
     return {**shown, 'side': side_of(channel), 'outside': abs(one.scaled) > OUTSIDE_STD}
-
-
-def _fields(record: object) -> dict[str, object]:
-    """Return the fields of a record for JSON, None where a number does not exist."""
-    found = {field.name: _value(getattr(record, field.name)) for field in fields(record)}  # type: ignore[arg-type]
-    if isinstance(record, Compared):
-        found |= {name: _value(getattr(record, name)) for name in DERIVED}
-    return found
-
-
-def _value(value: object) -> object:
-    if is_dataclass(value):
-        return _fields(value)
-    if isinstance(value, Mapping):
-        return {str(key): _value(one) for key, one in value.items()}
-    if isinstance(value, np.ndarray):
-        return _value(value.tolist())
-    if isinstance(value, tuple | list):
-        return [_value(one) for one in value]
-    return finite(value) if isinstance(value, float) else value

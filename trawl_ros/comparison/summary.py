@@ -18,26 +18,29 @@ LEAST_SPREAD = 0.02
 
 @dataclass(frozen=True)
 class Compared:
-    """Measured and reference value, and the std of the error of their difference, SI."""
+    """Measured and reference value, SI, and their difference.
+
+    Attributes
+    ----------
+    measured, reference, std
+        Values, and the std of the error of their difference.
+    difference, fraction, scaled
+        Measured minus reference, as a part of the reference, and in std of its error.
+    """
 
     measured: float
     reference: float
     std: float
+    difference: float
+    fraction: float
+    scaled: float
 
-    @property
-    def difference(self) -> float:
-        """Measured minus reference."""
-        return self.measured - self.reference
-
-    @property
-    def scaled(self) -> float:
-        """Difference in std of its error."""
-        return self.difference / self.std
-
-    @property
-    def fraction(self) -> float:
-        """Difference as a part of the reference."""
-        return self.difference / abs(self.reference) if self.reference else float('nan')
+    @classmethod
+    def of(cls, measured: float, reference: float, std: float) -> 'Compared':
+        """Return both values with their difference."""
+        off = measured - reference
+        part = off / abs(reference) if reference else math.nan
+        return cls(measured, reference, std, off, part, off / std)
 
 
 @dataclass(frozen=True)
@@ -62,9 +65,10 @@ class ComparedState:
     sensors: Mapping[str, Compared]
 
     @property
-    def warp(self) -> float:
-        """Mean warp length, m."""
-        return 0.5 * (self.inputs[0] + self.inputs[1])
+    def axes(self) -> dict[str, float]:
+        """Mean warp length (m), speed (m/s) and time (h) by axis."""
+        port, starboard, speed = self.inputs
+        return {'warp': 0.5 * (port + starboard), 'speed': speed, 'time': self.hours}
 
 
 @dataclass(frozen=True)
@@ -158,7 +162,7 @@ def _compared(rows: Rows, column: int, weights: FloatArray) -> Compared:
     """Return the mean of a channel with weights (n,)."""
     variance = rows.errors.covariance(_in_column(rows, column, weights[None]))[0, 0]
     measured, reference = weights @ rows.measured[:, column], weights @ rows.reference[:, column]
-    return Compared(float(measured), float(reference), math.sqrt(variance))
+    return Compared.of(float(measured), float(reference), math.sqrt(variance))
 
 
 def _in_column(rows: Rows, column: int, weights: FloatArray) -> FloatArray:
@@ -206,11 +210,8 @@ def sensors_of(
 
 def _axes(states: list[ComparedState]) -> dict[str, FloatArray]:
     """Return warp, speed and hours of states, where they change."""
-    found = {
-        'warp': np.array([state.warp for state in states]),
-        'speed': np.array([state.inputs[2] for state in states]),
-        'time': np.array([state.hours for state in states]),
-    }
+    rows = [state.axes for state in states]
+    found = {axis: np.array([row[axis] for row in rows]) for axis in rows[0]}
     logs = {state.log for state in states}
     return {
         axis: values

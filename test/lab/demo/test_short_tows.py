@@ -30,7 +30,8 @@ def test_the_log_is_named_and_its_error_is_in_the_interval(found):
 
 def test_it_is_six_times_what_can_be_detected_and_the_page_says_so(found):
     folder, finding = found
-    assert ShortTows().log_error_m_s > TIMES_DETECTABLE * finding.smallest_m_s
+    assert finding.sizes['times'] > TIMES_DETECTABLE
+    assert f'{finding.sizes["times"]:.1f} ×' in finding_lines(finding)[1]
     assert 'detectable from' in (folder / 'report.html').read_text()
 
 

@@ -199,30 +199,29 @@ def command(out: Path, scenario: Path | None, full: bool, diagnosis: bool) -> No
         _view(loaded, folder, console)
     figures = _draw(loaded, folder)
     _speak(loaded, folder)
-    folder.write_summary(
-        {
-            'finished': True,
-            'scenario': path.stem,
-            'minutes_at_sea': loaded.duration_s / 60.0,
-            'times_real_time': loaded.duration_s / tow_s,
-            'seconds': {'tow': tow_s, 'all': time.monotonic() - began},
-            'messages': {
-                topic: {'published': count, 'recorded': traffic.recorded.get(topic, 0)}
-                for topic, count in sorted(traffic.published.items())
-            },
-            'messages_lost': sum(abs(a - b) for a, b in traffic.lost.values()),
-            'windows': result['windows'],
-            'objective': result['objective'],
-            'channels': result['channels'],
-            'coefficients': {
-                name: {**values, 'truth': truth[name]}
-                for name, values in result['coefficients'].items()
-            },
-            'motion': result.get('motion'),
-            'bag': folder.bag.name,
-            'figures': figures,
-        }
-    )
+    summary = {
+        'finished': True,
+        'scenario': path.stem,
+        'minutes_at_sea': loaded.duration_s / 60.0,
+        'times_real_time': loaded.duration_s / tow_s,
+        'seconds': {'tow': tow_s, 'all': time.monotonic() - began},
+        'messages': {
+            topic: {'published': count, 'recorded': traffic.recorded.get(topic, 0)}
+            for topic, count in sorted(traffic.published.items())
+        },
+        'messages_lost': sum(abs(a - b) for a, b in traffic.lost.values()),
+        'windows': result['windows'],
+        'objective': result['objective'],
+        'channels': result['channels'],
+        'coefficients': {
+            name: {**values, 'truth': truth[name]}
+            for name, values in result['coefficients'].items()
+        },
+        'motion': result.get('motion'),
+        'bag': folder.bag.name,
+        'figures': figures,
+    }
+    folder.write_summary(summary)
     _require_all(traffic, folder)
     if learned is not None:
         print_result(result, truth)
@@ -237,6 +236,7 @@ def command(out: Path, scenario: Path | None, full: bool, diagnosis: bool) -> No
         steps.say('states of a log that errs, made without towing in time, diagnosed', 40)
         with ProgressDisplay(console) as display:
             found = diagnose_short_tows(folder.hidden, display)
+        folder.write_summary({**summary, 'hidden': found.sizes})
     lines = (
         f'{loaded.duration_s / 60:.0f} min at sea, {tow_s:.0f} s here: '
         f'{sum(traffic.recorded.values())} messages recorded, as many as were published.',

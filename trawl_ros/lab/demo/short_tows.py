@@ -104,6 +104,12 @@ class Finding:
         """Smallest error of the log that is detected in 80 % of such tows, m/s."""
         return float(self.numbers['smallest_detectable']['speed_log']['bias']['size'])
 
+    @property
+    def sizes(self) -> dict[str, float]:
+        """Error of the log, the smallest that is detected (m/s), and their ratio, as counted."""
+        made, smallest = self.made.log_error_m_s, self.smallest_m_s
+        return {'made_m_s': made, 'smallest_m_s': smallest, 'times': made / smallest}
+
     def errors(self, when: str) -> str:
         """List the errors of the model on the states held out, ``before`` or ``after``."""
         channels = self.numbers['channels']

@@ -41,10 +41,10 @@ def finding_lines(found: Finding) -> tuple[str, str, str]:
         f'{own["unit"]}'.rstrip()
         for name, own in effect['parameters'].items()
     )
-    made, smallest = found.made.log_error_m_s, found.smallest_m_s
+    made, smallest, times = found.sizes.values()
     return (
         f'In the short tows the model, boards refitted, misses by: {found.errors("before")}.',
-        f'Named: {found.name}: {values}. It was made {made} m/s too much, {made / smallest:.1f} × '
+        f'Named: {found.name}: {values}. It was made {made} m/s too much, {times:.1f} × '
         f'the {smallest:.3f} m/s that four of five such trials detect.',
         f'Repaired: with it in the gear file the errors are: {found.errors("after")}. '
         f'Instruments alone would give: {found.errors("expected")}.',
