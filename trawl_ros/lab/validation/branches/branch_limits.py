@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.branches.lattices import ANGLES, SPEED
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe, outward_normal_lift
@@ -257,8 +258,7 @@ def _table(found: list[tuple[BranchCurve, list[BranchLimit]]]) -> TextTable:
 
 def _figure(found: list[tuple[BranchCurve, list[BranchLimit]]]) -> Figure:
     units = list(dict.fromkeys(curve.sweep.unit for curve, _ in found))
-    figure = Figure(figsize=(4.6 * len(units) + 1.0, 4.6), layout='constrained')
-    panels = figure.subplots(1, len(units), squeeze=False)[0]
+    figure, panels = panes(4.6 * len(units) + 1.0, 4.6, 1, len(units))
     for axes, unit in zip(panels, units, strict=True):
         for number, (curve, ends) in enumerate(one for one in found if one[0].sweep.unit == unit):
             stable = curve.worst.real < 0.0
@@ -270,7 +270,6 @@ def _figure(found: list[tuple[BranchCurve, list[BranchLimit]]]) -> Figure:
                 mark = 'o' if end.kind == 'fold' else 'x'
                 axes.plot(end.value, end.inclination, mark, color=color)
         axes.set_xlabel({'m/s': 'speed (m/s)', 'm': 'warp (m)'}.get(unit, 'angle (°)'))
-        axes.grid(alpha=0.3)
         axes.legend(fontsize='small')
     panels[0].set_ylabel('inclination δ (°)')
     return figure

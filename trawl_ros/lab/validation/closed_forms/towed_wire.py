@@ -12,6 +12,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, lone_line, settled
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import order, refinement_figure
 from trawl_ros.model.assembly import block_forces
@@ -186,13 +187,11 @@ def run(quick: bool) -> Findings:
 
 
 def _shape(claimed: Wire) -> Figure:
-    figure = Figure(figsize=(6.4, 4.2), layout='constrained')
-    axes = figure.add_subplot()
+    figure, (axes,) = panes(6.4, 4.2)
     fine = integrated(200)
     axes.plot(*fine.places.T, '-', label='integrated')
     axes.plot(*claimed.places.T, 'o', ms=4, label=f'model, {CLAIMED} segments')
     axes.set(xlabel='ahead of the block [m]', ylabel='above the surface [m]', aspect='equal')
-    axes.grid(alpha=0.3)
     axes.legend()
     return figure
 

@@ -13,6 +13,7 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.convergence.gears import (
     AROUND_ZERO,
@@ -72,13 +73,13 @@ def run(quick: bool) -> Findings:
     lengths = (500.0,) if quick else (200.0, 500.0, 900.0)
     gear = load_gear('kaifuha')
     if quick:
-        gear = around_of(gear, 12)
+        gear = gear.with_around(12)
     default = row('default', gear, lengths)
     finer = [row(name, gear.refined(**factors), lengths) for name, factors in FINER.items()]
     own = gear.netting.around
     more = gear.refined(**FINER['net']).netting.around
     counts = [] if quick else [count for count in SERIES if count not in (own, more)]
-    series = {count: row(str(count), around_of(gear, count), lengths) for count in counts}
+    series = {count: row(str(count), gear.with_around(count), lengths) for count in counts}
     series[own] = default
     series[more] = next(one for one in finer if one.name == 'net')
     bowed_rows, bowed_table = bowed_nets(gear, (own, more) if quick else BOWED_MESHES_AROUND)
@@ -103,12 +104,6 @@ def run(quick: bool) -> Findings:
             f'against {np.degrees(REFERENCE):.0f}°.'
         ),
     )
-
-
-def around_of(gear: GearRecord, around: int) -> GearRecord:
-    """Return the gear with another number of numerical meshes around the net."""
-    netting = gear.netting.model_copy(update={'around': around})
-    return gear.model_copy(update={'netting': netting})
 
 
 def _checks(
@@ -191,8 +186,7 @@ def _value(name: str, value: float) -> str:
 
 def _figure(series: Mapping[int, RefinementRow], lengths: Sequence[float], own: int) -> Figure:
     counts = sorted(series)
-    figure = Figure(figsize=(4.2 * len(lengths) + 1.5, 4.6), layout='constrained')
-    panels = figure.subplots(1, len(lengths), sharey=True, squeeze=False)[0]
+    figure, panels = panes(4.2 * len(lengths) + 1.5, 4.6, 1, len(lengths), sharey=True)
     for k, (axes, length) in enumerate(zip(panels, lengths, strict=True)):
         shares = 100.0 * differences(
             np.array([series[count].seen[k] for count in counts]), series[counts[-1]].seen[k]
@@ -206,9 +200,7 @@ def _figure(series: Mapping[int, RefinementRow], lengths: Sequence[float], own: 
         axes.set_yscale('symlog', linthresh=ALLOWED_CHANGE_PERCENT)
         axes.set_yticks(TICKS, [f'{tick:g}' for tick in TICKS])
         axes.minorticks_off()
-        axes.set_xlabel('numerical meshes around the net')
-        axes.set_title(f'{length:g} m of warp')
-        axes.grid(alpha=0.3)
+        axes.set(xlabel='numerical meshes around the net', title=f'{length:g} m of warp')
     panels[0].set_ylabel('difference from the finest net (%)')
     figure.legend(*panels[0].get_legend_handles_labels(), loc='outside right center', frameon=False)
     return figure
