@@ -80,53 +80,29 @@ class BranchLimit:
 def sweeps(model: GearModel, lengths: Sequence[float], angles: bool) -> Iterator[ParameterSweep]:
     """The branches to follow: over speed, warp length, and installation angles both ways."""
     for length in lengths:
-        yield ParameterSweep(
-            f'speed at {length:g} m',
-            'm/s',
-            partial(_place, model, length),
-            SPEED,
-            -0.1,
-            1.4,
-            3.0,
-        )
+        family = partial(_place, model, length)
+        yield ParameterSweep(f'speed at {length:g} m', 'm/s', family, SPEED, -0.1, 1.4, 3.0)
     if not angles:
         return
     for sign in (-1.0, 1.0):
-        yield ParameterSweep(
-            f'warp length {"hauled" if sign < 0 else "veered"}',
-            'm',
-            partial(_hauled, model),
-            MIDDLE,
-            sign * 50.0,
-            100.0,
-            1000.0,
-        )
-    for index, name in enumerate(ANGLES):
+        name, family = f'warp length {"hauled" if sign < 0 else "veered"}', partial(_place, model)
+        yield ParameterSweep(name, 'm', family, MIDDLE, sign * 50.0, 100.0, 1000.0)
+    for index, angle in enumerate(ANGLES):
+        family = partial(_turned, model, index)
         for sign in (-1.0, 1.0):
-            yield ParameterSweep(
-                f'{name} {"<" if sign < 0 else ">"} 0',
-                '°',
-                partial(_turned, model, index),
-                0.0,
-                sign * 2.5,
-                -20.0,
-                20.0,
-            )
+            name = f'{angle} {"<" if sign < 0 else ">"} 0'
+            yield ParameterSweep(name, '°', family, 0.0, sign * 2.5, -20.0, 20.0)
 
 
-def _place(model: GearModel, length: float, speed: float) -> tuple[GearModel, Tow]:
+def _place(model: GearModel, length: float, speed: float = SPEED) -> tuple[GearModel, Tow]:
     return model, steady_tow(model, OperatingPoint(length, length, speed))
-
-
-def _hauled(model: GearModel, length: float) -> tuple[GearModel, Tow]:
-    return _place(model, length, SPEED)
 
 
 def _turned(model: GearModel, index: int, degrees: float) -> tuple[GearModel, Tow]:
     installation = np.zeros(3)
     installation[index] = np.radians(degrees)
     turned = model.with_board(installation=tuple(installation))
-    return _place(turned, MIDDLE, SPEED)
+    return _place(turned, MIDDLE)
 
 
 def followed_branch(sweep: ParameterSweep, most: int) -> BranchCurve:

@@ -3,32 +3,38 @@
 """Mesh convergence of the default gear: warp, bridles, net, and all of them refined."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
-from trawl_ros.lab.validation.convergence.gears import (
-    AROUND_ZERO,
-    REFERENCE,
-    SPEED,
-    RefinementRow,
-    differences,
-    row,
-)
 from trawl_ros.lab.validation.convergence.time_step import BOWING_PRESSURE_PA
-from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.report.pictures import Drawing
-from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
+
+SPEED = 2.1
+"""Speed through the water, m/s."""
+
+STRIDE = 1.15
+"""Largest ratio of warp lengths between a state and its start."""
+
+AROUND_ZERO = ('pitch', 'slip')
+"""Angles that can be near zero: pitch changes sign with growing warp length."""
+
+REFERENCE = np.radians(30.0)
+"""Reference for differences of these angles: 30°, the upper end of Fig. 5 of the paper."""
 
 ALLOWED_CHANGE_PERCENT = 2.0
 """Largest difference from the finer gear, %."""
@@ -66,6 +72,50 @@ DRAWN = (
 )
 
 TICKS = -50, -20, -10, -5, -2, -1, 0, 1, 2, 5, 10, 20, 50
+
+
+@dataclass(frozen=True)
+class RefinementRow:
+    """Observables (lengths, observables) of one gear; NaN for lengths without a steady state."""
+
+    name: str
+    nodes: int
+    seen: FloatArray
+
+
+def row(name: str, gear: GearRecord, lengths: tuple[float, ...]) -> RefinementRow:
+    """Solve one gear at all warp lengths, from the middle one outward."""
+    model = build_model(gear)
+    seen = np.full((len(lengths), len(OBSERVABLES)), np.nan)
+    middle = len(lengths) // 2
+    first = _solved(model, lengths[middle], None)
+    for k in sorted(range(len(lengths)), key=lambda k: abs(k - middle)):
+        found = first
+        # A fine net follows small changes of length more surely than it settles anew.
+        count = int(np.ceil(abs(np.log(lengths[k] / lengths[middle])) / np.log(STRIDE)))
+        for length in np.geomspace(lengths[middle], lengths[k], count + 1)[1:]:
+            found = _solved(model, float(length), found) if found is not None else None
+        found = found or _solved(model, lengths[k], None)
+        if found is not None:
+            seen[k] = found.observables.array()
+    return RefinementRow(name, model.nodes, seen)
+
+
+def _solved(model: GearModel, length: float, start: Equilibrium | None) -> Equilibrium | None:
+    try:
+        return find_equilibrium(model, OperatingPoint(length, length, SPEED), start)
+    except NoSteadyState:
+        return None
+
+
+def differences(seen: FloatArray, fine: FloatArray) -> FloatArray:
+    """Differences from the finer gear, as shares of its value.
+
+    Angles around zero are compared with `REFERENCE` instead. The last axis of each array runs over
+    the observables.
+    """
+    around = np.array([name.endswith(AROUND_ZERO) for name in OBSERVABLES])
+    return (seen - fine) / np.where(around, REFERENCE, np.abs(fine))
 
 
 def run(quick: bool) -> Findings:
