@@ -9,10 +9,10 @@ import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.rotations import about_z, to_quaternion
 from trawl_ros.messages import pieces
 from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.point_clouds import point_cloud
-from trawl_ros.messages.rotations import about_z, to_quaternion
 from trawl_ros.messages.stamps import to_time
 from trawl_ros.records.observables import OBSERVABLES, Observables
 from trawl_ros.records.topics import DOOR_FRAMES, VESSEL
