@@ -245,7 +245,7 @@ def _replay(
     processes.start(
         'identification_node',
         use_sim_time=True,
-        gear=_gear_file(scenario),
+        gear=str(scenario.gear_file),
         truth=path,
         # At this speed the whole tow is fitted afterwards, from the bag.
         motion=False,
@@ -280,20 +280,13 @@ def _learn(scenario: Scenario, folder: DemoFolder, console: Console) -> Report:
     with ProgressDisplay(console) as display:
         found = trials.identify(
             [folder.bag],
-            gear=_gear_file(scenario),
+            gear=scenario.gear_file,
             truth=scenario.path,
             out=folder.results,
             on_progress=display,
         )
     folder.gather_results()
     return found
-
-
-def _gear_file(scenario: Scenario) -> str:
-    """Path of the scenario's gear file for a process in another folder."""
-    name = scenario.record.gear
-    beside = scenario.path.parent / name
-    return str(beside) if name.endswith(('.yaml', '.yml')) else name
 
 
 def _view(scenario: Scenario, folder: DemoFolder, console: Console) -> None:
