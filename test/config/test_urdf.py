@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.resources import share_path
+from trawl_ros.core.rotations import to_quaternion
 from trawl_ros.instruments.parameters import load_instruments
-from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.transforms import mounts_message
 from trawl_ros.records.frames import (
     DOOR_MOUNTS,

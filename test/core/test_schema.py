@@ -173,7 +173,7 @@ def test_what_is_not_plain_yaml_is_refused(tmp_path: Path, text: str | bytes, pa
 def test_a_missing_file_and_a_folder_are_named(tmp_path: Path) -> None:
     with pytest.raises(GearError, match=r'none\.yaml: no such file'):
         load_yaml(tmp_path / 'none.yaml', GearError)
-    with pytest.raises(GearError, match='not a file'):
+    with pytest.raises(GearError, match='found a folder'):
         load_yaml(tmp_path, GearError)
 
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.geodesy import Datum, to_latitude_longitude
+from trawl_ros.core.rotations import to_angles, to_quaternion
 from trawl_ros.messages.cdr import STORE
 from trawl_ros.messages.diagnostics import ERROR, OK, STALE, WARN
 from trawl_ros.messages.fields import fields_of
 from trawl_ros.messages.pieces import ABSENT, UNKNOWN_VARIANCE
-from trawl_ros.messages.rotations import to_angles, to_quaternion
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.records.frames import (
     DOOR_MOUNTS,

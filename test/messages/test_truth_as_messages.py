@@ -7,9 +7,9 @@ import pytest
 from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.core.errors import MessageError
+from trawl_ros.core.rotations import to_quaternion
 from trawl_ros.messages.cdr import deserialize, serialize
 from trawl_ros.messages.markers import FULL_SCALE, gear_markers, tension_colours
-from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.transforms import rename_frames, transforms_message
 from trawl_ros.messages.truth_from_messages import (

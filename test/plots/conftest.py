@@ -14,9 +14,9 @@ from scipy.spatial.transform import Rotation
 
 from trawl_ros.bags.writer import BagWriter
 from trawl_ros.core.geodesy import Datum, to_latitude_longitude
+from trawl_ros.core.rotations import to_quaternion
 from trawl_ros.messages.cdr import serialize
 from trawl_ros.messages.markers import gear_markers
-from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.to_messages import sample_message
 from trawl_ros.messages.truth_to_messages import truth_messages
 from trawl_ros.model.water import Water

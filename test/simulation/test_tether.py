@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.messages.rotations import about_z, rotation_matrix
+from trawl_ros.core.rotations import about_z, rotation_matrix
 from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.simulation.tether import Tether, VehicleMotion

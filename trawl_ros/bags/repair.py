@@ -26,11 +26,11 @@ from trawl_ros.core.errors import BagError, MessageError
 from trawl_ros.core.files import new_folder, written_folder
 from trawl_ros.core.foreign import reading
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
+from trawl_ros.core.time import SECOND
 
 SUFFIX = '_repaired'
 
 _NUMBERED = re.compile(r'(?P<stem>.*)_(?P<number>\d+)')
-_SECOND = 1_000_000_000
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ class _Damaged:
                 unusable[topic] += 1
                 continue
             begin = time if begin is None else begin
-            on_progress(WorkProgress('repairing', (time - begin) / _SECOND, None, 's'))
+            on_progress(WorkProgress('repairing', (time - begin) / SECOND, None, 's'))
             yield definition, stored
         packed.report(file.path, self._report)
         for topic, count in unusable.items():

@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """``trawl gear``."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
+from rich.console import Console
 
 from trawl_ros.cli.console.progress import ProgressDisplay, error_console
 from trawl_ros.cli.console.state_lines import state_lines
@@ -12,6 +15,10 @@ from trawl_ros.cli.console.tables import output_console, plain_table
 from trawl_ros.cli.options import FILE, FOLDER, SPEED, UNITS_OPTION, WARP, Number
 from trawl_ros.core.display_units import DisplayUnits
 from trawl_ros.core.errors import GearError
+
+if TYPE_CHECKING:
+    from trawl_ros.api.gear_check import GearCheck
+    from trawl_ros.gear.net_plan import NetPlanRecord
 
 EXIT_FINDINGS = 3
 """Exit code of ``trawl gear check`` with findings; 1 is an error, 2 wrong usage."""
@@ -38,48 +45,13 @@ def check(gear: str, out: Path | None, units: DisplayUnits) -> None:
     from trawl_ros.model.rigging import ropes_of
 
     found = check_gear(gear)
-    console, plan = output_console(), found.gear.netting.plan
-    model = found.model
+    console, model = output_console(), found.model
     click.echo(
         f'{found.gear.name}: {found.twine_area:.4g} m² of twine; {len(model.layout.net)} nodes in '
         f'the net, {model.gear.netting.around} meshes around the mouth'
     )
-    if plan is not None:
-        table = plain_table(
-            'part', 'panel', 'section', 'mesh mm', 'across', 'along', 'm long', 'twine', 'mm', 'm²',
-            'kg', right=('mesh mm', 'along', 'm long', 'mm', 'm²', 'kg'),
-        )  # fmt: skip
-        for piece in plan.pieces:
-            table.add_row(
-                piece.part,
-                f'{piece.count} × {piece.panel}' if piece.panel != 'all' else 'all',
-                piece.section,
-                f'{piece.mesh_mm:g}',
-                f'{piece.front_meshes:g}–{piece.back_meshes:g}',
-                f'{piece.long_meshes:g}',
-                f'{piece.length:.2f}',
-                f'{piece.material}{"" if piece.knots == "knotted" else " knotless"}'
-                f'{"" if piece.orientation == "T0" else f" {piece.orientation}"}',
-                f'{1e3 * piece.twine.diameter:.2f}',
-                f'{piece.twine_area:.1f}',
-                f'{piece.mass:.1f}',
-            )
-        console.print(table)
-        for rope in ('headrope', 'footrope', 'side_rope'):
-            record = getattr(found.gear, rope)
-            given = None if record is None else record.length_m
-            length = plan.rope_length(rope) if given is None else given
-            netting = ', '.join(
-                f'{kind} {metres:.4g} m' for kind, metres in plan.hung_netting(rope).items()
-            )
-            click.echo(f'{rope}: {length:.4g} m of rope on netting of {netting}')
-        for rope, rim in zip(('headrope', 'footrope', 'side_rope'), model.net_mesh.frame or ()):
-            cut = {
-                kind: sum(m for k, m in zip(rim.kinds, rim.netting, strict=True) if k == kind)
-                for kind in plan.hung_netting(rope)
-            }
-            netting = ', '.join(f'{kind} {metres:.4g} m' for kind, metres in cut.items())
-            click.echo(f'{rope} as the meshes of the model are cut: {netting}')
+    if found.gear.netting.plan is not None:
+        _print_plan(found.gear.netting.plan, found, console)
     if model.catch is not None:
         body = model.catch.body
         click.echo(
@@ -116,6 +88,46 @@ def check(gear: str, out: Path | None, units: DisplayUnits) -> None:
         click.echo(picture)
     if found.findings:
         raise SystemExit(EXIT_FINDINGS)
+
+
+def _print_plan(plan: 'NetPlanRecord', found: 'GearCheck', console: Console) -> None:
+    """Print the pieces of a net plan, and the netting along its ropes as planned and as cut."""
+
+    def told(lengths: Mapping[str, float]) -> str:
+        return ', '.join(f'{kind} {metres:.4g} m' for kind, metres in lengths.items())
+
+    table = plain_table(
+        'part', 'panel', 'section', 'mesh mm', 'across', 'along', 'm long', 'twine', 'mm', 'm²',
+        'kg', right=('mesh mm', 'along', 'm long', 'mm', 'm²', 'kg'),
+    )  # fmt: skip
+    for piece in plan.pieces:
+        table.add_row(
+            piece.part,
+            f'{piece.count} × {piece.panel}' if piece.panel != 'all' else 'all',
+            piece.section,
+            f'{piece.mesh_mm:g}',
+            f'{piece.front_meshes:g}–{piece.back_meshes:g}',
+            f'{piece.long_meshes:g}',
+            f'{piece.length:.2f}',
+            f'{piece.material}{"" if piece.knots == "knotted" else " knotless"}'
+            f'{"" if piece.orientation == "T0" else f" {piece.orientation}"}',
+            f'{1e3 * piece.twine.diameter:.2f}',
+            f'{piece.twine_area:.1f}',
+            f'{piece.mass:.1f}',
+        )
+    console.print(table)
+    for rope in ('headrope', 'footrope', 'side_rope'):
+        record = getattr(found.gear, rope)
+        given = None if record is None else record.length_m
+        length = plan.rope_length(rope) if given is None else given
+        netting = told(plan.hung_netting(rope))
+        click.echo(f'{rope}: {length:.4g} m of rope on netting of {netting}')
+    for rope, rim in zip(('headrope', 'footrope', 'side_rope'), found.model.net_mesh.frame or ()):
+        cut = {
+            kind: sum(m for k, m in zip(rim.kinds, rim.netting, strict=True) if k == kind)
+            for kind in plan.hung_netting(rope)
+        }
+        click.echo(f'{rope} as the meshes of the model are cut: {told(cut)}')
 
 
 @command.command('state')

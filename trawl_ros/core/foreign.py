@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.limits import JSON_BYTES, YAML_NUMBER
+from trawl_ros.core.limits import JSON_BYTES, YAML_NUMBER, Limit
 
 
 @contextmanager
@@ -71,6 +71,15 @@ def open_file(path: Path, error: type[TrawlError]) -> BinaryIO:
     return os.fdopen(number, 'rb')
 
 
+def read_whole(path: Path, limit: Limit, error: type[TrawlError], expected: str) -> bytes:
+    """Read a file of at most ``limit`` bytes; otherwise the error says what was ``expected``."""
+    with open_file(path, error) as stream:
+        data = stream.read(limit.value + 1)
+    if len(data) > limit.value:
+        raise error(f'{path}: larger than {limit}, expected {expected}')
+    return data
+
+
 def load_json(path: Path, error: type[TrawlError]) -> object:
     """Load a JSON file within the limits of size, nesting and numbers.
 
@@ -80,10 +89,7 @@ def load_json(path: Path, error: type[TrawlError]) -> object:
         Of class ``error``, if it is missing, too large or not JSON, or contains NaN or a number
         that is too large.
     """
-    with open_file(path, error) as stream:
-        data = stream.read(JSON_BYTES.value + 1)
-    if len(data) > JSON_BYTES.value:
-        raise error(f'{path}: larger than {JSON_BYTES}, expected a smaller JSON file')
+    data = read_whole(path, JSON_BYTES, error, 'a smaller JSON file')
     try:
         return parse_json(data)
     except ValueError as reason:

@@ -16,7 +16,7 @@ import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 
 from trawl_ros.core.errors import TrawlError
-from trawl_ros.core.foreign import one_line, reading
+from trawl_ros.core.foreign import one_line, read_whole, reading
 from trawl_ros.core.limits import DIAGNOSIS, YAML_BYTES, YAML_DEPTH, YAML_NUMBER, YAML_VALUES
 from trawl_ros.core.validation_messages import shown, validation_messages
 
@@ -77,18 +77,7 @@ def load_yaml(path: str | Path, error: type[TrawlError]) -> dict[str, object]:
         Of class ``error``: the file is missing, unreadable, too large, not YAML or not a
         mapping; a key occurs twice or is not text; an alias or a tag is used.
     """
-    path = Path(path)
-    if not path.exists():
-        raise error(f'{path}: no such file')
-    if not path.is_file():
-        raise error(f'{path}: not a file, expected a YAML file')
-    try:
-        with path.open('rb') as stream:
-            raw = stream.read(YAML_BYTES.value + 1)
-    except OSError as reason:
-        raise error(f'{path}: cannot be read ({reason.strerror})') from reason
-    if len(raw) > YAML_BYTES.value:
-        raise error(f'{path}: larger than {YAML_BYTES}, expected a smaller YAML file')
+    raw = read_whole(Path(path), YAML_BYTES, error, 'a smaller YAML file')
     with reading(path, error):
         try:
             data = yaml.load(raw.decode('utf-8'), _Loader)

@@ -78,21 +78,13 @@ def lasting(ns: int) -> str:
     return f'{seconds:.4g} s'
 
 
-def impossible_time(stamp: int, now: int | None = None) -> str | None:
-    """Return why a stamp (ns) cannot be the time of a measurement; None if it can.
-
-    Parameters
-    ----------
-    stamp
-        The stamp.
-    now
-        Present time (ns); by default that of this machine.
-    """
+def impossible_time(stamp: int) -> str | None:
+    """Return why a stamp (ns) cannot be the time of a measurement; None if it can."""
     if stamp < 0:
         return 'before 1970'
     if SIMULATED_UNTIL <= stamp < EARLIEST_NS:
         return 'before 1990'
-    if stamp >= EARLIEST_NS and stamp > (time_ns() if now is None else now) + MARGIN_NS:
+    if stamp >= EARLIEST_NS and stamp > time_ns() + MARGIN_NS:
         return FUTURE
     return None
 

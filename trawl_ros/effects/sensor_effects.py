@@ -9,6 +9,7 @@ inputs; sensors show the observables with the effects applied.
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.time import SECOND
 from trawl_ros.effects.base.effect import Readings, Situation
 from trawl_ros.effects.effect_set import EffectSet
 from trawl_ros.model.water import Water
@@ -19,7 +20,7 @@ from trawl_ros.records.samples import Sample
 FIXED_POINT_ITERATIONS = 20
 """Iterations for the indicated inputs; each leaves a fifth of the error or less."""
 
-HOUR_NS = 3600 * 1_000_000_000
+HOUR_NS = 3600 * SECOND
 OTHER = {'port': 'starboard', 'starboard': 'port'}
 USUAL_INPUTS = (500.0, 500.0, 2.0)
 """Warp lengths (m) and speed (m/s) in place of those that an instrument does not measure."""

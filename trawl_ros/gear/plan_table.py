@@ -8,7 +8,7 @@ from pathlib import Path
 import yaml
 
 from trawl_ros.core.errors import GearError
-from trawl_ros.core.foreign import open_file, reading
+from trawl_ros.core.foreign import read_whole, reading
 from trawl_ros.core.limits import YAML_BYTES
 from trawl_ros.core.schema import CONTROL, validated
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord
@@ -32,10 +32,7 @@ def read_plan(path: Path) -> NetPlanRecord:
     GearError
         If the table is wrong; it names file, line, column, found and expected values.
     """
-    with open_file(path, GearError) as stream:
-        raw = stream.read(YAML_BYTES.value + 1)
-    if len(raw) > YAML_BYTES.value:
-        raise GearError(f'{path}: larger than {YAML_BYTES}, expected a smaller table')
+    raw = read_whole(path, YAML_BYTES, GearError, 'a smaller table')
     try:
         text = raw.decode('utf-8-sig')
     except UnicodeDecodeError as reason:

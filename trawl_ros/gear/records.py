@@ -324,6 +324,11 @@ class GearRecord(Record):
         """Return the properties of a bridle, or of the sweep."""
         return self.bridle.model_copy(update=own.changes)
 
+    def with_around(self, around: int) -> 'GearRecord':
+        """Return a copy of the gear with ``around`` meshes around its net, and rows that match."""
+        netting = self.netting.model_copy(update={'around': around})
+        return self.model_copy(update={'netting': netting})
+
     def refined(
         self, *, warp: int = 1, bridle: int = 1, net: float = 1.0, unjoined: bool = False
     ) -> 'GearRecord':

@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.instruments.distance import within_limits
+from trawl_ros.core.rotations import rotation_matrix
+from trawl_ros.instruments.distance import RangeSensor
 from trawl_ros.instruments.errors.faults import Faulty
 from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
 from trawl_ros.instruments.parameters import AngleParameters, DoorParameters, SpreadParameters
@@ -28,9 +29,8 @@ def door_tilt(orientation: FloatArray) -> tuple[float, float]:
     ``orientation`` is the quaternion (x, y, z, w) of a frame x forward, y port, z up. Angles are
     relative to gravity and do not depend on the heading.
     """
-    x, y, z, w = np.asarray(orientation, dtype=float) / np.linalg.norm(orientation)
-    # An inclinometer measures the vertical in its own axes: the last row of the rotation matrix.
-    up = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+    # An inclinometer measures the vertical in its own axes.
+    up = rotation_matrix(orientation)[2]
     return math.atan2(-up[0], math.hypot(up[1], up[2])), math.atan2(up[1], up[2])
 
 
@@ -41,9 +41,7 @@ def off_axis(doors: Doors) -> float:
     for door, way, outward in zip(
         doors, (starboard - port, port - starboard), _OUTWARD, strict=True
     ):
-        # The door's y axis: the second column of its rotation matrix.
-        x, y, z, w = door.orientation
-        sideways = np.array([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)])
+        sideways = rotation_matrix(door.orientation)[:, 1]
         cosine = -outward * float(sideways @ way) / float(np.linalg.norm(way))
         worst = max(worst, math.acos(min(max(cosine, -1.0), 1.0)))
     return worst
@@ -68,7 +66,7 @@ class DoorAttitude(Instrument[FloatArray, AttitudeSample]):
         )
 
 
-class DoorSpread(Instrument[Doors, RangeSample]):
+class DoorSpread(RangeSensor[Doors]):
     """Acoustic spread sensor from door to door; it observes both doors, port first.
 
     The travel time follows from the speed of sound at the doors and is converted with the assumed
@@ -78,9 +76,7 @@ class DoorSpread(Instrument[Doors, RangeSample]):
     def __init__(
         self, parameters: SpreadParameters, surroundings: Surroundings, draws: SeedPlan
     ) -> None:
-        errors = {'distance': parameters.model()}
-        super().__init__('door/spread', parameters.timing(), errors, draws)
-        self._limits = parameters.min_range_m, parameters.max_range_m
+        super().__init__('door/spread', 'spread', parameters, draws)
         self._half_angle = math.radians(parameters.beam_half_angle_deg)
         self._assumed = parameters.assumed_sound_speed_m_s
         self._surroundings = surroundings
@@ -91,12 +87,10 @@ class DoorSpread(Instrument[Doors, RangeSample]):
         if self._assumed is not None:
             depth = -0.5 * float(port[2] + starboard[2])
             apart *= self._assumed / self._surroundings.sound_speed(depth)
-        distance = self._measure('distance', apart, stamp)
-        if self._half_angle < math.pi and off_axis(part) > self._half_angle:
-            return None
-        low, high = self._limits
-        reading = within_limits(distance, low, high)
-        return RangeSample(stamp, 'spread', reading, self._stated_std('distance'), low, high)
+        # Measured unseen too, so that the beam does not change the errors of later readings.
+        reading = self._measured(apart, stamp)
+        unseen = self._half_angle < math.pi and off_axis(part) > self._half_angle
+        return None if unseen else reading
 
 
 class DoorInstruments:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.instruments.distance import within_limits
-from trawl_ros.instruments.errors.instrument import Instrument, SeedPlan
+from trawl_ros.instruments.distance import RangeSensor
+from trawl_ros.instruments.errors.instrument import SeedPlan
 from trawl_ros.instruments.parameters import EchoSounderParameters, RangeParameters
 from trawl_ros.instruments.sonar.schools import inside
 from trawl_ros.records.samples import RangeSample, Sample
@@ -48,7 +48,7 @@ def cone(half_angle: float) -> FloatArray:
     return np.concatenate([[[0.0, 0.0, -1.0]], rays])
 
 
-class _Sounding(Instrument[Below, RangeSample]):
+class _Sounding(RangeSensor[Below]):
     """Sounding: a distance down from the keel by the travel time of sound.
 
     The travel time is converted with the assumed speed of sound.
@@ -62,10 +62,7 @@ class _Sounding(Instrument[Below, RangeSample]):
         surroundings: Surroundings,
         draws: SeedPlan,
     ) -> None:
-        errors = {'distance': parameters.model()}
-        super().__init__(f'vessel/echo_sounder/{what}', parameters.timing(), errors, draws)
-        self._what = what
-        self._limits = parameters.min_range_m, parameters.max_range_m
+        super().__init__(f'vessel/echo_sounder/{what}', what, parameters, draws)
         self._assumed = assumed_sound_speed
         self._surroundings = surroundings
 
@@ -79,9 +76,7 @@ class _Sounding(Instrument[Below, RangeSample]):
             keel = -float(part.keel[2])
             mean = self._surroundings.mean_sound_speed(keel, keel + distance)
             distance *= self._assumed / mean
-        low, high = self._limits
-        reading = within_limits(self._measure('distance', distance, stamp), low, high)
-        return RangeSample(stamp, self._what, reading, self._stated_std('distance'), low, high)
+        return self._measured(distance, stamp)
 
 
 class DepthSounding(_Sounding):

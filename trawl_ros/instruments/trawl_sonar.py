@@ -4,11 +4,10 @@
 
 import math
 
-import numpy as np
-
-from trawl_ros.core.arrays import ByteArray, FloatArray
+from trawl_ros.core.arrays import ByteArray
+from trawl_ros.core.rotations import rotation_matrix
 from trawl_ros.core.time import SECOND
-from trawl_ros.instruments.distance import RangeInstrument, within_limits
+from trawl_ros.instruments.distance import RangeInstrument, RangeSensor
 from trawl_ros.instruments.errors.instrument import STAMP_TOLERANCE_NS, Instrument, SeedPlan
 from trawl_ros.instruments.errors.random_processes import BurstModel, Bursts, generator
 from trawl_ros.instruments.parameters import (
@@ -30,7 +29,7 @@ from trawl_ros.records.samples import (
     SonarScanSample,
 )
 from trawl_ros.records.surroundings import Surroundings
-from trawl_ros.records.truth import NetTruth, Truth
+from trawl_ros.records.truth import Truth
 
 
 class TrawlSonar(Instrument[Truth, Sweep]):
@@ -133,26 +132,14 @@ def _ping(truth: Truth, angle: float) -> Ping:
     return Ping(
         angle=angle,
         position=net.sonar_position,
-        axes=_axes(net),
+        axes=rotation_matrix(net.sonar_orientation),
         section=net.section,
         schools=truth.schools,
         altitude=altitude if altitude > 0 else math.inf,
     )
 
 
-def _axes(net: NetTruth) -> FloatArray:
-    """Return the axes x, y, z of frame ``sonar`` in ``map`` as columns."""
-    x, y, z, w = net.sonar_orientation
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
-class SonarOpening(Instrument[tuple[int, float] | None, RangeSample]):
+class SonarOpening(RangeSensor[tuple[int, float] | None]):
     """Opening of the net as read from an image.
 
     It observes the stamp (ns) of the image and the opening (m), NaN if it cannot be read, or None
@@ -160,18 +147,13 @@ class SonarOpening(Instrument[tuple[int, float] | None, RangeSample]):
     """
 
     def __init__(self, what: str, parameters: OpeningParameters, draws: SeedPlan) -> None:
-        errors = {'distance': parameters.model()}
-        super().__init__(f'sonar/{what}', parameters.timing(), errors, draws)
-        self._what = what
-        self._limits = parameters.min_range_m, parameters.max_range_m
+        super().__init__(f'sonar/{what}', what, parameters, draws)
 
     def _read(self, part: tuple[int, float] | None, stamp: int) -> RangeSample | None:
         if part is None:
             return None
         seen, opening = part
-        low, high = self._limits
-        distance = within_limits(self._measure('distance', opening, seen), low, high)
-        return RangeSample(seen, self._what, distance, self._stated_std('distance'), low, high)
+        return self._measured(opening, seen)
 
 
 class SonarBottom(RangeInstrument):

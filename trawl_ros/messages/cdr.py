@@ -23,14 +23,11 @@ DECODING_ERRORS = (SerdeError, struct.error, ValueError, IndexError, MemoryError
 """Exceptions that generated decoders raise if the bytes do not match the type."""
 
 
-def serialize(message: Any, type_name: str | None = None) -> bytes:
-    """Encode a message as little-endian CDR with its 4-byte header.
-
-    ``type_name`` may be left out: messages carry their own.
-    """
+def serialize(message: Any) -> bytes:
+    """Encode a message as little-endian CDR with its 4-byte header."""
     if isinstance(message, Encoded):
         return message.data
-    return bytes(STORE.serialize_cdr(message, type_name or message.__msgtype__))
+    return bytes(STORE.serialize_cdr(message, message.__msgtype__))
 
 
 def deserialize(data: bytes, type_name: str) -> Any:

@@ -14,7 +14,7 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import MessageError
-from trawl_ros.messages.rotations import to_angles, to_quaternion
+from trawl_ros.core.rotations import to_angles, to_quaternion
 from trawl_ros.messages.stamps import header
 from trawl_ros.records.topics import TOPICS, WINCH_NAMES
 

@@ -7,8 +7,8 @@ from typing import Any
 
 from rosbags.typesys.stores import ros2_jazzy as ros
 
+from trawl_ros.core.rotations import to_quaternion
 from trawl_ros.messages.pieces import TopicMessage, vector
-from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.messages.stamps import header
 from trawl_ros.records.frames import Mount
 from trawl_ros.records.topics import (

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from trawl_ros.core.rotations import about_z
 from trawl_ros.messages.pieces import (
     joint_column,
     read_angles,
@@ -15,7 +16,6 @@ from trawl_ros.messages.pieces import (
     winch_columns,
 )
 from trawl_ros.messages.point_clouds import read_point_cloud
-from trawl_ros.messages.rotations import about_z
 from trawl_ros.messages.truth_to_messages import SCHOOL_FIELDS
 from trawl_ros.records.observables import OBSERVABLES, Observables
 from trawl_ros.records.truth import (

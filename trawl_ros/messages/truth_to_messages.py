@@ -2,13 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Conversion of truth into messages, each as (relative topic name, message)."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from rosbags.typesys.stores import ros2_jazzy as ros
 
+from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.rotations import about_z, to_quaternion
 from trawl_ros.messages import pieces
 from trawl_ros.messages.pieces import TopicMessage
 from trawl_ros.messages.point_clouds import point_cloud
-from trawl_ros.messages.rotations import about_z, to_quaternion
 from trawl_ros.messages.stamps import to_time
 from trawl_ros.records.observables import OBSERVABLES, Observables
 from trawl_ros.records.topics import DOOR_FRAMES, VESSEL
@@ -17,7 +21,6 @@ from trawl_ros.records.truth import (
     DoorTruth,
     NetTruth,
     SchoolTruth,
-    SeabedTruth,
     Truth,
     VesselTruth,
     WinchTruth,
@@ -44,86 +47,52 @@ def truth_messages(truth: Truth, odometry_std: float = 0.0) -> list[TopicMessage
     messages.append(_winches(truth.stamp, truth.winches))
     messages += _vessel(truth.stamp, truth.vessel, odometry_std)
     messages.append(_schools(truth.stamp, truth.schools))
-    messages.append(_seabed(truth.stamp, truth.seabed))
+    depths = (truth.seabed.under_ship, truth.seabed.under_headrope, 0.0)
+    messages.append(_vector(truth.stamp, 'truth/seabed', depths))
     if truth.observables is not None:
         messages.append(_observables(truth.stamp, truth.observables))
     return messages
 
 
+def _stamped(stamp: int, topic: str, kind: Any, *content: Any) -> TopicMessage:
+    """Return the message of a topic: its header, then the content."""
+    return topic, kind(pieces.topic_header(stamp, topic), *content)
+
+
+def _vector(stamp: int, topic: str, values: Any) -> TopicMessage:
+    return _stamped(stamp, topic, ros.geometry_msgs__msg__Vector3Stamped, pieces.vector(values))
+
+
+def _cloud(stamp: int, topic: str, columns: Mapping[str, FloatArray]) -> TopicMessage:
+    return topic, point_cloud(pieces.topic_header(stamp, topic), columns)
+
+
 def _door(stamp: int, side: str, door: DoorTruth, std: float) -> list[TopicMessage]:
-    frame = DOOR_FRAMES[side]
-    odometry, angles, wrench = (
-        f'truth/door/{side}/{what}' for what in ('odom', 'angles', 'wrench')
-    )
+    topic = f'truth/door/{side}'
+    pose = pieces.with_covariance(pieces.pose(door.position, door.orientation), std)
+    twist = pieces.twist_with_covariance(door.velocity, door.angular_velocity, std)
+    wrench = ros.geometry_msgs__msg__Wrench(pieces.vector(door.force), pieces.vector(door.moment))
+    odometry = ros.nav_msgs__msg__Odometry
     return [
-        (
-            odometry,
-            ros.nav_msgs__msg__Odometry(
-                pieces.topic_header(stamp, odometry),
-                frame,
-                pieces.with_covariance(pieces.pose(door.position, door.orientation), std),
-                pieces.twist_with_covariance(door.velocity, door.angular_velocity, std),
-            ),
-        ),
-        (
-            angles,
-            ros.geometry_msgs__msg__Vector3Stamped(
-                pieces.topic_header(stamp, angles),
-                pieces.vector((door.attack, door.slip, door.inclination)),
-            ),
-        ),
-        (
-            wrench,
-            ros.geometry_msgs__msg__WrenchStamped(
-                pieces.topic_header(stamp, wrench),
-                ros.geometry_msgs__msg__Wrench(
-                    pieces.vector(door.force), pieces.vector(door.moment)
-                ),
-            ),
-        ),
+        _stamped(stamp, f'{topic}/odom', odometry, DOOR_FRAMES[side], pose, twist),
+        _vector(stamp, f'{topic}/angles', (door.attack, door.slip, door.inclination)),
+        _stamped(stamp, f'{topic}/wrench', ros.geometry_msgs__msg__WrenchStamped, wrench),
     ]
 
 
 def _net(stamp: int, net: NetTruth) -> list[TopicMessage]:
-    mouth, opening, pose = 'truth/net/mouth', 'truth/net/opening', 'truth/sonar/pose'
-    section, seen = 'truth/sonar/section', 'truth/sonar/opening'
     x, y, diameters = net.section.T
     corners = [ros.geometry_msgs__msg__Point32(*map(float, point)) for point in net.mouth]
+    mouth = ros.geometry_msgs__msg__Polygon(corners)
     openings = (net.horizontal_opening, net.vertical_opening, net.headrope_depth)
+    pose = pieces.pose(net.sonar_position, net.sonar_orientation)
+    section = {'x': x, 'y': y, 'z': 0.0 * x, 'diameter': diameters}
     return [
-        (
-            mouth,
-            ros.geometry_msgs__msg__PolygonStamped(
-                pieces.topic_header(stamp, mouth), ros.geometry_msgs__msg__Polygon(corners)
-            ),
-        ),
-        (
-            opening,
-            ros.geometry_msgs__msg__Vector3Stamped(
-                pieces.topic_header(stamp, opening), pieces.vector(openings)
-            ),
-        ),
-        (
-            pose,
-            ros.geometry_msgs__msg__PoseStamped(
-                pieces.topic_header(stamp, pose),
-                pieces.pose(net.sonar_position, net.sonar_orientation),
-            ),
-        ),
-        (
-            section,
-            point_cloud(
-                pieces.topic_header(stamp, section),
-                {'x': x, 'y': y, 'z': 0.0 * x, 'diameter': diameters},
-            ),
-        ),
-        (
-            seen,
-            ros.geometry_msgs__msg__Vector3Stamped(
-                pieces.topic_header(stamp, seen),
-                pieces.vector((net.section_height, net.section_width, 0.0)),
-            ),
-        ),
+        _stamped(stamp, 'truth/net/mouth', ros.geometry_msgs__msg__PolygonStamped, mouth),
+        _vector(stamp, 'truth/net/opening', openings),
+        _stamped(stamp, 'truth/sonar/pose', ros.geometry_msgs__msg__PoseStamped, pose),
+        _cloud(stamp, 'truth/sonar/section', section),
+        _vector(stamp, 'truth/sonar/opening', (net.section_height, net.section_width, 0.0)),
     ]
 
 
@@ -134,51 +103,28 @@ def _winches(stamp: int, winches: tuple[WinchTruth, WinchTruth]) -> TopicMessage
 
 
 def _vessel(stamp: int, vessel: VesselTruth, std: float) -> list[TopicMessage]:
-    odometry, through_water = 'truth/vessel/odom', 'truth/vessel/velocity_water'
     turning = (0.0, 0.0, vessel.yaw_rate)
     over_ground = about_z(vessel.heading).T @ vessel.velocity_ground
     pose = pieces.pose(vessel.position, to_quaternion(0.0, 0.0, vessel.heading))
+    odometry = (
+        VESSEL,
+        pieces.with_covariance(pose, std),
+        pieces.twist_with_covariance(over_ground, turning, std),
+    )
+    through_water = pieces.twist(vessel.velocity_water, turning)
+    twist = ros.geometry_msgs__msg__TwistStamped
     return [
-        (
-            odometry,
-            ros.nav_msgs__msg__Odometry(
-                pieces.topic_header(stamp, odometry),
-                VESSEL,
-                pieces.with_covariance(pose, std),
-                pieces.twist_with_covariance(over_ground, turning, std),
-            ),
-        ),
-        (
-            through_water,
-            ros.geometry_msgs__msg__TwistStamped(
-                pieces.topic_header(stamp, through_water),
-                pieces.twist(vessel.velocity_water, turning),
-            ),
-        ),
+        _stamped(stamp, 'truth/vessel/odom', ros.nav_msgs__msg__Odometry, *odometry),
+        _stamped(stamp, 'truth/vessel/velocity_water', twist, through_water),
     ]
 
 
 def _schools(stamp: int, schools: tuple[SchoolTruth, ...]) -> TopicMessage:
-    topic = 'truth/schools'
     rows = [[*school.position, *school.size, school.density] for school in schools]
     columns = np.array(rows, dtype=float).reshape(-1, len(SCHOOL_FIELDS)).T
-    return topic, point_cloud(
-        pieces.topic_header(stamp, topic), dict(zip(SCHOOL_FIELDS, columns, strict=True))
-    )
-
-
-def _seabed(stamp: int, seabed: SeabedTruth) -> TopicMessage:
-    topic = 'truth/seabed'
-    depths = pieces.vector((seabed.under_ship, seabed.under_headrope, 0.0))
-    return topic, ros.geometry_msgs__msg__Vector3Stamped(pieces.topic_header(stamp, topic), depths)
+    return _cloud(stamp, 'truth/schools', dict(zip(SCHOOL_FIELDS, columns, strict=True)))
 
 
 def _observables(stamp: int, observables: Observables) -> TopicMessage:
-    topic = 'truth/observables'
-    return topic, ros.sensor_msgs__msg__JointState(
-        pieces.topic_header(stamp, topic),
-        list(OBSERVABLES),
-        observables.array(),
-        np.zeros(0),
-        np.zeros(0),
-    )
+    content = list(OBSERVABLES), observables.array(), np.zeros(0), np.zeros(0)
+    return _stamped(stamp, 'truth/observables', ros.sensor_msgs__msg__JointState, *content)

@@ -179,8 +179,9 @@ def pull_slopes_at(
     by_vector: FloatArray,
     by_stretching: FloatArray,
 ) -> None:
-    """Fill in the derivatives (3, 3) of a bar's tension times its unit vector.
+    """Fill in the derivatives (3, 3) of a bar's tension T times its unit vector t.
 
+    By the bar's vector r they are t (∂T/∂r)ᵀ + T (I - t tᵀ) / |r|: tension changes, and t turns.
     ``force`` and ``slope`` are the results of `tension_at`.
     """
     span = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
@@ -255,7 +256,10 @@ def load_slopes_at(
 def mass_at(
     own: float, normal: float, tangential: float, vector: FloatArray, matrix: FloatArray
 ) -> None:
-    """Fill in the mass and added mass (3, 3) of a bar (eq. 25, 26)."""
+    """Fill in the mass and added mass (3, 3) of a bar (eq. 25, 26).
+
+    With its unit vector t it is ``own`` I + ``normal`` (I - t tᵀ) + ``tangential`` t tᵀ.
+    """
     square = vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2
     for i in range(3):
         for j in range(3):

@@ -15,6 +15,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.bar_pass import WaterTable
 from trawl_ros.model.compiled import compiled, njit_device
 from trawl_ros.model.current import current_at
+from trawl_ros.model.numerics import ROOT_FLOOR
 
 LAW_RANGE = (0.0, radians(40.0))
 """Attack angles (rad) for which eq. 14 holds unchanged."""
@@ -85,7 +86,7 @@ def _folded(attack: float) -> float:
 def _across(flow: FloatArray) -> float:
     """Return the fade factor of α, which vanishes where the flow runs along the span."""
     plane = flow[0] ** 2 + flow[1] ** 2
-    part: float = plane / (plane + flow[2] ** 2 + 1e-18) / LEAST_IN_PLANE_FRACTION
+    part: float = plane / (plane + flow[2] ** 2 + ROOT_FLOOR) / LEAST_IN_PLANE_FRACTION
     return part * (2.0 - part) if part.real < 1.0 else 0 * part + 1.0
 
 
@@ -159,7 +160,7 @@ def fill_loads(
     for n in range(len(flow)):
         across, down = flow[n, 0] ** 2 + flow[n, 1] ** 2, flow[n, 2] ** 2
         pressure = 0.5 * density[n] * area * (across + down) * _across(flow[n])
-        c, plane = coefficients[n], np.sqrt(across + 1e-18)
+        c, plane = coefficients[n], np.sqrt(across + ROOT_FLOOR)
         # Drag along the flow in the board's x-y plane, lift across it.
         ahead, aside = flow[n, 0] / plane, flow[n, 1] / plane
         force[n, 0] = pressure * (c[0] * ahead + c[1] * aside)
@@ -192,7 +193,7 @@ def fill_total(
     spin = np.empty(3, total.dtype)
     for n in range(len(total)):
         turn, side = rotation[n], outward[n]
-        speed = np.sqrt(flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2 + 1e-18)
+        speed = np.sqrt(flow[n, 0] ** 2 + flow[n, 1] ** 2 + flow[n, 2] ** 2 + ROOT_FLOOR)
         for i in range(3):
             # In the outward frame; a rate is an axial vector like a moment.
             along = turn[0, i] * rate[n, 0] + turn[1, i] * rate[n, 1] + turn[2, i] * rate[n, 2]

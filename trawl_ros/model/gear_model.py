@@ -18,8 +18,8 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board import Board
 from trawl_ros.model.board_table import TableLaw
 from trawl_ros.model.hooks import CoefficientModifier, ComposedModifier, NodeForce
-from trawl_ros.model.kite import Kite
-from trawl_ros.model.line import BarProperties
+from trawl_ros.model.kite import Kite, build_kite
+from trawl_ros.model.line import BarGroup, BarProperties
 from trawl_ros.model.net.catch import CodendCatch
 from trawl_ros.model.net.kite_nodes import KiteNodes
 from trawl_ros.model.net.netting import build_net
@@ -105,34 +105,6 @@ class NodeLayout:
         """Bridles of port and of starboard."""
         half = len(self.bridles) // 2
         return self.bridles[:half], self.bridles[half:]
-
-
-@dataclass(frozen=True)
-class BarGroup:
-    """Group of k bars.
-
-    Attributes
-    ----------
-    bars
-        Their numbers (k,).
-    points
-        Numbers of the points at which they end.
-    ends
-        Ends (k, 2) as places among ``points``.
-    properties
-        Their properties.
-    """
-
-    bars: IntArray
-    points: IntArray
-    ends: IntArray
-    properties: BarProperties
-
-    def rows(self, nodes: int) -> IntArray:
-        """Return the degrees of freedom of the points that are nodes, in a gear of ``nodes``."""
-        free = self.points[self.points < nodes]
-        every: IntArray = (3 * free[:, None] + np.arange(3)).ravel()
-        return every
 
 
 @dataclass(frozen=True)
@@ -229,7 +201,7 @@ class GearModel:
         return np.flatnonzero(self.warp_side == 0), np.flatnonzero(self.warp_side == 1)
 
     @cached_property
-    def rigging(self) -> 'BarGroup':
+    def rigging(self) -> BarGroup:
         """Bars of the warps, and all other bars at boards."""
         rigged = self.pattern.rigged
         return self._group(np.concatenate([*self.warp_bars, rigged[self.warp_side[rigged] < 0]]))
@@ -240,11 +212,11 @@ class GearModel:
         return self.pattern.blocks(self.sheets.around[:, :1], self.sheets.around)
 
     @cached_property
-    def warps(self) -> 'BarGroup':
+    def warps(self) -> BarGroup:
         """Bars of both warps."""
         return self._group(np.concatenate(self.warp_bars))
 
-    def _group(self, bars: IntArray) -> 'BarGroup':
+    def _group(self, bars: IntArray) -> BarGroup:
         points, ends = np.unique(self.ends[bars], return_inverse=True)
         return BarGroup(bars, points, ends.reshape(-1, 2), self.bars.chosen(bars))
 
@@ -380,7 +352,7 @@ def build_model(gear: GearRecord) -> GearModel:
         gear=gear,
         water=water,
         board=board,
-        kite=_build_kite(gear),
+        kite=build_kite(gear),
         coefficients=np.array([getattr(gear.board.coefficients, c) for c in COEFFICIENTS]),
         bars=BarProperties(*np.array(build.rows).T),
         ends=ends,
@@ -410,20 +382,4 @@ def build_model(gear: GearRecord) -> GearModel:
         pattern=build_pattern(build.count, ends, kite.nodes),
         node_forces=lumps.lifting,
         catch=lumps.catch,
-    )
-
-
-def _build_kite(gear: GearRecord) -> Kite:
-    kite = gear.kite
-    if kite is None:
-        return Kite(0.0, 0.0, 0.0, 0.0, False, 0.0, 1.0, 0.0)
-    return Kite(
-        area=kite.area_m2,
-        mass=kite.mass_kg,
-        volume=kite.volume_m3,
-        setting=float(np.radians(kite.setting_deg)),
-        pitched=kite.chord_m is not None,
-        normal_slope=kite.normal_slope,
-        normal_limit=kite.normal_limit,
-        drag_base=kite.drag_base,
     )

@@ -10,12 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.bar import SPEED_ROUNDING_M_S
 from trawl_ros.model.bar_pass import WaterTable, water_of
 from trawl_ros.model.board_law import angle_at
 from trawl_ros.model.compiled import as_kind, compiled, stepped_among
 from trawl_ros.model.current import current_at
-from trawl_ros.model.numerics import length
+from trawl_ros.model.numerics import ROOT_FLOOR, length
 from trawl_ros.model.water import Water
 
 
@@ -43,6 +44,23 @@ class Kite:
     drag_base: float
 
 
+def build_kite(gear: GearRecord) -> Kite:
+    """Return the kite of a gear file; one without area or mass for gear that has none."""
+    kite = gear.kite
+    if kite is None:
+        return Kite(0.0, 0.0, 0.0, 0.0, False, 0.0, 1.0, 0.0)
+    return Kite(
+        area=kite.area_m2,
+        mass=kite.mass_kg,
+        volume=kite.volume_m3,
+        setting=float(np.radians(kite.setting_deg)),
+        pitched=kite.chord_m is not None,
+        normal_slope=kite.normal_slope,
+        normal_limit=kite.normal_limit,
+        drag_base=kite.drag_base,
+    )
+
+
 def attack_angle(kite: Kite, front: FloatArray, rear: FloatArray, flow: FloatArray) -> FloatArray:
     """Return the attack angle a_c (rad).
 
@@ -67,7 +85,8 @@ def fill_attack_angles(
 ) -> None:
     """Fill in the attack angles (n,)."""
     for n in range(len(attack)):
-        chord, level = 1e-18 + 0 * flow[n, 0], 1e-18 + 0 * flow[n, 0]
+        # Zero times the flow makes the sums complex where the flow is.
+        chord, level = ROOT_FLOOR + 0 * flow[n, 0], ROOT_FLOOR + 0 * flow[n, 0]
         for i in range(2):
             chord += (front[n, i] - rear[n, i]) ** 2
             level += flow[n, i] ** 2
@@ -137,7 +156,7 @@ def fill_loads(
         normal = straight / np.sqrt(np.sqrt(1.0 + square * square))
         drag = drag_base + normal * np.sin(attack[n])
         for i in range(3):
-            force[n, i] = pressure * drag * np.sqrt(speed_square + 1e-18) * flow[n, i]
+            force[n, i] = pressure * drag * np.sqrt(speed_square + ROOT_FLOOR) * flow[n, i]
         raised = pressure * normal * np.cos(attack[n]) * speed_square
         force[n, 2] += raised - (mass - here * volume) * gravity
 

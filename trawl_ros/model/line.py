@@ -68,6 +68,34 @@ class BarProperties:
 
 
 @dataclass(frozen=True)
+class BarGroup:
+    """Group of k bars.
+
+    Attributes
+    ----------
+    bars
+        Their numbers (k,).
+    points
+        Numbers of the points at which they end.
+    ends
+        Ends (k, 2) as places among ``points``.
+    properties
+        Their properties.
+    """
+
+    bars: IntArray
+    points: IntArray
+    ends: IntArray
+    properties: BarProperties
+
+    def rows(self, nodes: int) -> IntArray:
+        """Return the degrees of freedom of the points that are nodes, in a gear of ``nodes``."""
+        free = self.points[self.points < nodes]
+        every: IntArray = (3 * free[:, None] + np.arange(3)).ravel()
+        return every
+
+
+@dataclass(frozen=True)
 class BarMotion:
     """Motion of ``n`` bars from end i to end j.
 

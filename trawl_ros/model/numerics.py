@@ -15,6 +15,9 @@ from trawl_ros.core.arrays import FloatArray
 STEP = 1e-30
 """Imaginary step h; no difference is taken, so it causes no cancellation."""
 
+ROOT_FLOOR = 1e-18
+"""Added to a sum of squares (m² or m²/s²) below a root, which has no derivative at zero."""
+
 
 def stepped(values: FloatArray, direction: FloatArray) -> FloatArray:
     """Return values with an imaginary step along a direction; typed as real for the physics."""

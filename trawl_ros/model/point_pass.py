@@ -65,7 +65,8 @@ def gather_loads(
 ) -> None:
     """Fill in the generalised forces (dof,) from the loads of points, boards and kite.
 
-    Loads are (p, 3), (2, 6) and (3,); ``carriers`` are the nodes that share the load of the kite.
+    Loads are (p, 3), (2, 6) and (3,); ``carriers`` are the nodes that share the load of the kite. A
+    board has the pull of the ropes at its fastening points and their moment Σ arm × rope.
     """
     count = len(points) - 8
     for n in range(count):

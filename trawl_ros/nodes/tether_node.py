@@ -11,6 +11,7 @@ from rosbags.typesys.stores import ros2_jazzy as ros
 
 from trawl_ros.core.errors import MessageError, NoSteadyState
 from trawl_ros.core.limits import TRUTH
+from trawl_ros.core.rotations import rotation_matrix
 from trawl_ros.core.time import SECOND
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages import pieces
@@ -18,7 +19,6 @@ from trawl_ros.messages.commands import WINCH_COMMAND, read_winch_command
 from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.fields import beyond
 from trawl_ros.messages.markers import gear_markers
-from trawl_ros.messages.rotations import rotation_matrix
 from trawl_ros.messages.stamps import header, stamp_of
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.nodes.runtime.node import TrawlNode

@@ -11,9 +11,9 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import BagError, MessageError
+from trawl_ros.core.rotations import about_z, to_angles
 from trawl_ros.core.time import SECOND
 from trawl_ros.messages.from_messages import to_sample
-from trawl_ros.messages.rotations import about_z, to_angles
 from trawl_ros.messages.stamps import stamp_of
 from trawl_ros.messages.truth_from_messages import winch_truth
 from trawl_ros.plots.bag_messages import BagMessages, TowMessage

@@ -13,6 +13,7 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.kite import LiftingBodies
 from trawl_ros.model.observables import observe
 from trawl_ros.model.state import State, Tow
+from trawl_ros.plots.shapes import chain, plate
 from trawl_ros.records.observables import Observables
 from trawl_ros.report import style
 from trawl_ros.solver.first_guess import first_guess
@@ -116,16 +117,13 @@ def _lines(model: GearModel, state: State, tow: Tow) -> list[tuple[str, FloatArr
     for name, numbers, _ in model.layout.lines:
         if not name.endswith('_warp'):
             along = (points[numbers] - origin) * turn
-            grouped.setdefault(name, []).append(np.stack([along[:-1], along[1:]], axis=1))
+            grouped.setdefault(name, []).append(chain(along))
     for place, axes in zip(state.board_positions, state.board_rotations, strict=True):
-        ahead, up = 0.5 * model.board.chord * axes[:, 0], 0.5 * model.board.span * axes[:, 2]
-        ring = place + np.array([ahead + up, ahead - up, -ahead - up, up - ahead, ahead + up])
-        ring = (ring - origin) * turn
-        grouped.setdefault('board', []).append(np.stack([ring[:-1], ring[1:]], axis=1))
+        board = plate(place - origin, axes, (model.board.chord, model.board.span))
+        grouped.setdefault('board', []).append(board * turn)
     if model.catch is not None:
         for ring in _catch_rings(model.catch.body, points[model.layout.net[-2:]]):
-            ring = (ring - origin) * turn
-            grouped.setdefault('catch', []).append(np.stack([ring[:-1], ring[1:]], axis=1))
+            grouped.setdefault('catch', []).append(chain((ring - origin) * turn))
     return [(name, np.concatenate(pieces)) for name, pieces in grouped.items()]
 
 

@@ -11,8 +11,8 @@ from matplotlib.colors import to_rgb
 from scipy.spatial.transform import Rotation
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.rotations import to_quaternion
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.messages.rotations import to_quaternion
 from trawl_ros.plots.moments import GEAR, MOUTH, Moment, corners
 from trawl_ros.plots.records import SCHOOLS, GearShape, Strand, TowHistory
 from trawl_ros.records.topics import VESSEL, WINCH_NAMES
@@ -69,12 +69,12 @@ def strands_of(marker: Any) -> list[Strand]:
     """Strands of a marker: lines as they are, plates and ellipsoids as outlines."""
     points = np.array([[p.x, p.y, p.z] for p in marker.points]).reshape(-1, 3)
     if marker.type == marker.LINE_STRIP:
-        pieces = np.stack([points[:-1], points[1:]], axis=1)
+        pieces = chain(points)
     elif marker.type == marker.LINE_LIST:
         pieces = points.reshape(-1, 2, 3)
     elif marker.type == marker.CUBE:
         place, turn = marker.pose.position, marker.pose.orientation
-        pieces = _plate(
+        pieces = plate(
             np.array([place.x, place.y, place.z]),
             Rotation.from_quat([turn.x, turn.y, turn.z, turn.w]).as_matrix(),
             (marker.scale.x, marker.scale.z),
@@ -88,11 +88,11 @@ def strands_of(marker: Any) -> list[Strand]:
     return [Strand(marker.ns, pieces, colours.reshape(-1, 3))]
 
 
-def _plate(middle: FloatArray, axes: FloatArray, size: tuple[float, float]) -> FloatArray:
+def plate(middle: FloatArray, axes: FloatArray, size: tuple[float, float]) -> FloatArray:
     """Outline (4, 2, 3) of a plate of (length along x, height along z)."""
     along, up = 0.5 * size[0] * axes[:, 0], 0.5 * size[1] * axes[:, 2]
     ring = middle + np.array([along + up, along - up, -along - up, -along + up, along + up])
-    return np.stack([ring[:-1], ring[1:]], axis=1)
+    return chain(ring)
 
 
 def _rings(marker: Any) -> FloatArray:
@@ -102,7 +102,7 @@ def _rings(marker: Any) -> FloatArray:
     circle = np.column_stack([np.cos(turn), np.sin(turn), 0.0 * turn])
     return np.concatenate(
         [
-            _chain(
+            chain(
                 np.array([place.x, place.y, place.z])
                 + 0.5 * np.array([size.x, size.y, size.z]) * np.roll(circle, axis, axis=1)
             )
@@ -137,14 +137,14 @@ def _from_truth(
     mouth = corners(moment)
     half = len(mouth) // 2
     strands = [
-        _one_colour('headrope', _chain(mouth[:half]), NETTING),
-        _one_colour('footrope', _chain(mouth[half:]), NETTING),
+        _one_colour('headrope', chain(mouth[:half]), NETTING),
+        _one_colour('footrope', chain(mouth[half:]), NETTING),
     ]
     for k, (side, (place, axes)) in enumerate(zip(SIDES, doors, strict=True)):
         block = origin + (0.5 - k) * gear.block_distance * port
         upper, lower = (mouth[0], mouth[-1]) if k == 0 else (mouth[half - 1], mouth[half])
         strands += _side(side, block, place, axes, gear, [upper, lower])
-        strands.append(_one_colour(f'{side}_wing_end', _chain(np.array([upper, lower])), NETTING))
+        strands.append(_one_colour(f'{side}_wing_end', chain(np.array([upper, lower])), NETTING))
     return GearShape(
         moment.time,
         tuple(_in_ships_axes(strand, origin, yaw) for strand in strands),
@@ -183,11 +183,11 @@ def _from_readings(time: float, tow: TowHistory, gear: GearRecord) -> GearShape 
         x = float(np.mean(behind, axis=0)[0]) - gear.behind_boards
         ring = [[x, s * half_width, -depth - d * height] for s, d in ((1, 0), (-1, 0), (-1, 1))]
         ring = [*ring, [x, half_width, -depth - height], ring[0]]
-        strands.append(_one_colour('mouth', _chain(np.array(ring)), NETTING))
+        strands.append(_one_colour('mouth', chain(np.array(ring)), NETTING))
         for side, sign, place in ends:
             for name, z in (('upper', -depth), ('lower', -depth - height)):
                 wing = np.array([place, [x, sign * half_width, z]])
-                strands.append(_one_colour(f'{side}_{name}_bridle', _chain(wing), COLOURS[side]))
+                strands.append(_one_colour(f'{side}_{name}_bridle', chain(wing), COLOURS[side]))
     return GearShape(
         time,
         tuple(_in_ships_axes(strand, np.zeros(3), 0.0) for strand in strands),
@@ -206,18 +206,19 @@ def _side(
 ) -> list[Strand]:
     """Strands of a side: warp, door and bridles, straight."""
     colour = COLOURS[side]
-    plate = _plate(door, axes, (gear.board.chord_m, gear.board.span_m))
+    board = plate(door, axes, (gear.board.chord_m, gear.board.span_m))
     return [
-        _one_colour(f'{side}_warp', _chain(np.array([block, door])), colour),
-        _one_colour(f'door_{side}', plate, colour),
+        _one_colour(f'{side}_warp', chain(np.array([block, door])), colour),
+        _one_colour(f'door_{side}', board, colour),
         *(
-            _one_colour(f'{side}_{name}_bridle', _chain(np.array([door, wing])), colour)
+            _one_colour(f'{side}_{name}_bridle', chain(np.array([door, wing])), colour)
             for name, wing in zip(('upper', 'lower'), wings, strict=False)
         ),
     ]
 
 
-def _chain(points: FloatArray) -> FloatArray:
+def chain(points: FloatArray) -> FloatArray:
+    """Return the pieces (n - 1, 2, 3) of a line through points (n, 3)."""
     return np.stack([points[:-1], points[1:]], axis=1)
 
 

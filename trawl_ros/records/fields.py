@@ -10,10 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
-import numpy as np
 from pydantic import Field
 
-from trawl_ros.core.compass import compass_yaw, course_velocity, speed_course
 from trawl_ros.core.quantity import Quantity, check_quantity, check_unit, in_si
 from trawl_ros.core.schema import Record
 from trawl_ros.core.units import UNITS
@@ -203,10 +201,12 @@ def _own_numbers(topic: str, logged: Mapping[str, float]) -> dict[str, float]:
     """Convert the numbers of a log into those of the sample."""
     match topic:
         case 'vessel/velocity_ground':
-            east, north, _ = course_velocity(logged['speed'], logged['compass_course'])
-            return {'east': float(east), 'north': float(north)}
+            speed, course = logged['speed'], logged['compass_course']
+            return {'east': speed * math.sin(course), 'north': speed * math.cos(course)}
         case 'vessel/heading':
-            return {'heading': compass_yaw(logged['compass_heading'])}
+            # From clockwise from north to counter-clockwise from east, -π to π.
+            yaw = math.remainder(0.5 * math.pi - logged['compass_heading'], 2.0 * math.pi)
+            return {'heading': yaw}
         case 'vessel/fix':
             return {name: math.degrees(value) for name, value in logged.items()}
     return dict(logged)
@@ -216,10 +216,10 @@ def _logged_numbers(topic: str, own: Mapping[str, float]) -> Mapping[str, float]
     """Convert the numbers of a sample into those of a log."""
     match topic:
         case 'vessel/velocity_ground':
-            speed, course = speed_course(np.array([own['east'], own['north']]))
-            return {'speed': speed, 'compass_course': course}
+            course = math.atan2(own['east'], own['north']) % (2.0 * math.pi)
+            return {'speed': math.hypot(own['east'], own['north']), 'compass_course': course}
         case 'vessel/heading':
-            return {'compass_heading': compass_yaw(own['heading']) % (2 * math.pi)}
+            return {'compass_heading': (0.5 * math.pi - own['heading']) % (2.0 * math.pi)}
         case 'vessel/fix':
             return {name: math.radians(value) for name, value in own.items()}
     return own

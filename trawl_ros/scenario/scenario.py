@@ -63,6 +63,11 @@ class Scenario:
     instruments: InstrumentParameters
 
     @property
+    def gear_file(self) -> str | Path:
+        """Gear file, or name of a gear of the package."""
+        return _beside(self.path, self.record.gear)
+
+    @property
     def heading(self) -> float:
         """Heading at the start, ENU yaw, rad."""
         return math.radians(self.record.heading_deg)

@@ -22,6 +22,9 @@ FIRST_LEAN = np.radians(14.0)
 DEPTH_PER_WARP, REACH_PER_WARP = 0.22, 0.16
 """Depth and sideways reach of a board per length of warp, typical of gears."""
 
+BRIDLE_REACH = 0.88
+"""Distance of the net behind the boards per length of bridle: bridles run inward at some 28°."""
+
 MAX_SIDEWAYS_FRACTION = 0.95
 """Largest sideways part of warp and bridle for which ships of a pair are close enough."""
 
@@ -63,7 +66,7 @@ def first_guess(model: GearModel, tow: Tow, heading: float, *, turned: bool = Fa
     share = np.arange(1, model.warp_segments) / model.warp_segments
     for side, warp in enumerate(layout.warps):
         nodes[warp] = blocks[side] + share[:, None] * (boards[side] - blocks[side])
-    nodes[layout.net] += [boards[:, 0].mean() - 0.88 * bridle, 0.0, boards[:, 2].mean()]
+    nodes[layout.net] += [boards[:, 0].mean() - BRIDLE_REACH * bridle, 0.0, boards[:, 2].mean()]
     starts = boards.copy()
     for side, sweep in enumerate(layout.sweeps):
         _lay_sweep(model, nodes, side, boards[side])
@@ -124,8 +127,7 @@ def coarser_model(model: GearModel) -> GearModel | None:
 
 @lru_cache(maxsize=4)
 def _coarse(gear: GearRecord, around: int) -> GearModel:
-    netting = gear.netting.model_copy(update={'around': around})
-    return build_model(gear.model_copy(update={'netting': netting}))
+    return build_model(gear.with_around(around))
 
 
 def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:

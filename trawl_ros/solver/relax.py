@@ -29,6 +29,13 @@ KEEP_MAX_RATE, KEEP_MAX_STEP = 0.4, 0.05
 """The factorised matrix is kept while the residual falls to at most this ratio, after a step of at
 most this fraction of the largest."""
 
+MAX_GROWTH, MIN_GROWTH, SHRINKING = 3.0, 0.25, 1.5
+"""Factors on the time step: the largest, while the residual falls; the least, where it rises; and
+the divisor after a step that was too large."""
+
+SHORTEST_TIME_STEP_S, LONGEST_TIME_STEP_S = 0.3, 1e9
+"""Bounds of the time step: with the longest, a step is Newton's to rounding."""
+
 SINGULAR_TIME_STEP_S = 1e-6
 """Time step below which a matrix that is still singular remains singular."""
 
@@ -98,8 +105,9 @@ def relax(
         step = factor.solve(force)
         size = step_size(model, step)
         # Bars that flip between slack and taut raise the residual: take a shorter time step.
-        growth = 3.0 if residual < last else max(0.25, last / residual)
-        tau = max(tau / 1.5, 0.3) if size > 1.0 else min(max(growth * tau, 0.3), 1e9)
+        growth = MAX_GROWTH if residual < last else max(MIN_GROWTH, last / residual)
+        tau = tau / SHRINKING if size > 1.0 else growth * tau
+        tau = min(max(tau, SHORTEST_TIME_STEP_S), LONGEST_TIME_STEP_S)
         if size > KEEP_MAX_STEP:
             factor = None
         last = residual

@@ -8,8 +8,8 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.geodesy import Datum, to_east_north
+from trawl_ros.core.rotations import about_z
 from trawl_ros.core.time import SECOND
-from trawl_ros.messages.rotations import about_z
 from trawl_ros.records.samples import FixSample
 from trawl_ros.view.records import Fix, ShipPose
 

@@ -12,7 +12,7 @@ from trawl_ros.lab.benchmark.modules import NAMES
 from trawl_ros.lab.report.machine import cpu_model, software
 from trawl_ros.lab.report.page import Findings
 
-KEYS = {'what', 'value', 'unit', 'target', 'ok', 'note'}
+KEYS = {'what', 'value', 'low', 'high', 'unit', 'target', 'ok', 'note'}
 
 
 def run(*arguments):

@@ -4,7 +4,6 @@ import math
 
 import pytest
 
-from trawl_ros.lab.commands.benchmark import row_record
 from trawl_ros.lab.report.measured import (
     MeasuredValue,
     at_least,
@@ -58,10 +57,6 @@ def test_records_keep_the_keys_of_their_reports_and_have_no_numbers_that_json_la
     assert row.record() == {
         'what': 'speed', 'value': None, 'low': None, 'high': None, 'unit': '×',
         'target': (100.0, None), 'ok': False, 'note': 'no MoorDyn',
-    }  # fmt: skip
-    assert row_record(row) == {
-        'what': 'speed', 'value': None, 'unit': '×', 'target': 100.0, 'ok': False,
-        'note': 'no MoorDyn',
     }  # fmt: skip
     assert check_record(row) == {
         'what': 'speed', 'measured': None, 'expected': 100.0, 'tolerance': 0.0, 'rule': 'at_least',

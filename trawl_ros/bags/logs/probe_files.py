@@ -18,7 +18,7 @@ import numpy as np
 
 from trawl_ros.bags.logs.layout import BadRow, LogRow, ProbeFormat
 from trawl_ros.core.errors import LogError
-from trawl_ros.core.foreign import open_file, reading
+from trawl_ros.core.foreign import read_whole, reading
 from trawl_ros.core.limits import LOG_READINGS, PROBE_BYTES
 
 NO_ANSWER = '---'
@@ -87,10 +87,8 @@ def read_probe_rows(path: Path, form: ProbeFormat) -> tuple[list[LogRow | BadRow
     LogError
         If the file is missing or of another format; names file, line and reason.
     """
-    with reading(path, LogError), open_file(path, LogError) as content:
-        text = content.read(PROBE_BYTES.value + 1)
-        if len(text) > PROBE_BYTES.value:
-            raise LogError(f'{path}: larger than {PROBE_BYTES}, expected a file of one day')
+    with reading(path, LogError):
+        text = read_whole(path, PROBE_BYTES, LogError, 'a file of one day')
         lines = text.decode('latin-1').replace('\0', '').splitlines()
         refuse_without_clock(path, lines)
         if (sniffed := format_of(lines)) != form:

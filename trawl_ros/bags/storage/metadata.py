@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, StringConstraints
 from trawl_ros.bags.storage.qos import dump_profiles, parse_profiles
 from trawl_ros.bags.storage.stored import Definition
 from trawl_ros.core.errors import BagError
-from trawl_ros.core.foreign import open_file, short
+from trawl_ros.core.foreign import read_whole, short
 from trawl_ros.core.limits import METADATA_BYTES, METADATA_DEPTH, METADATA_VALUES, NAME
 from trawl_ros.core.schema import validated
 
@@ -216,10 +216,7 @@ def read_information(path: Path) -> Any:
         If the file is unreadable, not YAML, or has no such key.
     """
     hint = 'the .mcap file beside it can be opened alone'
-    with open_file(path, BagError) as stream:
-        text = stream.read(METADATA_BYTES.value + 1)
-    if len(text) > METADATA_BYTES.value:
-        raise BagError(f'{path}: larger than {METADATA_BYTES}; expected a bag of sane size')
+    text = read_whole(path, METADATA_BYTES, BagError, 'a bag of sane size')
     try:
         data = load_plain(text)
     # Tags bring along whatever their constructors raise.

@@ -11,98 +11,76 @@ kind, ends the reading of the bag.
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import yaml
 
 from trawl_ros.bags.storage.metadata import FILE_NAME, BagMetadata, read_information
 
-_Check = Callable[[Any], bool]
-
-
-def _is_text(value: Any) -> bool:
-    return isinstance(value, str)
+# What a value has to be: a type, a check, [what each item of a list has to be], or the keys of a
+# map, each with the version that brought it and what its value has to be.
+_Wanted = type | Callable[[Any], bool] | list[Any] | Mapping[str, tuple[int, Any]]
 
 
 def _is_count(value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**64
 
 
-def _is_list(value: Any) -> bool:
-    return isinstance(value, list)
-
-
-def _is_texts(value: Any) -> bool:
-    return isinstance(value, list) and all(map(_is_text, value))
+def _is_count_or_text(value: Any) -> bool:
+    return _is_count(value) or isinstance(value, str)
 
 
 def _is_custom(value: Any) -> bool:
     # Nothing, where nothing was given: an empty map is written as null.
-    return value is None or (isinstance(value, dict) and all(map(_is_text, value.values())))
+    return value is None or (
+        isinstance(value, dict) and all(isinstance(text, str) for text in value.values())
+    )
 
 
-def _is_map(value: Any) -> bool:
-    return isinstance(value, dict)
-
-
-# Key → version that brought it, and what it has to be.
-BAG: Mapping[str, tuple[int, _Check]] = MappingProxyType(
+_DURATION = {'nanoseconds': (0, _is_count)}
+_START = {'nanoseconds_since_epoch': (0, _is_count)}
+_TIME = {'sec': (4, _is_count), 'nsec': (4, _is_count)}
+_FILE = {
+    'path': (5, str),
+    'starting_time': (5, _START),
+    'duration': (5, _DURATION),
+    'message_count': (5, _is_count),
+}
+_PROFILES = [
     {
-        'version': (0, _is_count),
-        'storage_identifier': (0, _is_text),
-        'duration': (0, _is_map),
-        'starting_time': (0, _is_map),
-        'message_count': (0, _is_count),
-        'topics_with_message_count': (0, _is_list),
-        'compression_format': (3, _is_text),
-        'compression_mode': (3, _is_text),
-        'relative_file_paths': (0, _is_texts),
-        'files': (5, _is_list),
-        'custom_data': (6, _is_custom),
-        'ros_distro': (8, _is_text),
-    }
-)
-DURATION: Mapping[str, tuple[int, _Check]] = MappingProxyType({'nanoseconds': (0, _is_count)})
-START: Mapping[str, tuple[int, _Check]] = MappingProxyType(
-    {'nanoseconds_since_epoch': (0, _is_count)}
-)
-FILE: Mapping[str, tuple[int, _Check]] = MappingProxyType(
-    {
-        'path': (5, _is_text),
-        'starting_time': (5, _is_map),
-        'duration': (5, _is_map),
-        'message_count': (5, _is_count),
-    }
-)
-TOPIC: Mapping[str, tuple[int, _Check]] = MappingProxyType(
-    {'topic_metadata': (0, _is_map), 'message_count': (0, _is_count)}
-)
-TOPIC_METADATA: Mapping[str, tuple[int, _Check]] = MappingProxyType(
-    {
-        'name': (0, _is_text),
-        'type': (0, _is_text),
-        'serialization_format': (0, _is_text),
-        'offered_qos_profiles': (4, lambda value: _is_text(value) or _is_list(value)),
-        'type_description_hash': (7, _is_text),
-    }
-)
-QOS: Mapping[str, tuple[int, _Check]] = MappingProxyType(
-    {
-        'history': (4, lambda value: _is_count(value) or _is_text(value)),
+        'history': (4, _is_count_or_text),
         'depth': (4, _is_count),
-        'reliability': (4, lambda value: _is_count(value) or _is_text(value)),
-        'durability': (4, lambda value: _is_count(value) or _is_text(value)),
-        'deadline': (4, _is_map),
-        'lifespan': (4, _is_map),
-        'liveliness': (4, lambda value: _is_count(value) or _is_text(value)),
-        'liveliness_lease_duration': (4, _is_map),
-        'avoid_ros_namespace_conventions': (4, lambda value: isinstance(value, bool)),
+        'reliability': (4, _is_count_or_text),
+        'durability': (4, _is_count_or_text),
+        'deadline': (4, _TIME),
+        'lifespan': (4, _TIME),
+        'liveliness': (4, _is_count_or_text),
+        'liveliness_lease_duration': (4, _TIME),
+        'avoid_ros_namespace_conventions': (4, bool),
     }
-)
-TIME: Mapping[str, tuple[int, _Check]] = MappingProxyType(
-    {'sec': (4, _is_count), 'nsec': (4, _is_count)}
-)
+]
+_TOPIC_METADATA = {
+    'name': (0, str),
+    'type': (0, str),
+    'serialization_format': (0, str),
+    'offered_qos_profiles': (4, _PROFILES),
+    'type_description_hash': (7, str),
+}
+_TOPIC = {'topic_metadata': (0, _TOPIC_METADATA), 'message_count': (0, _is_count)}
+_BAG = {
+    'version': (0, _is_count),
+    'storage_identifier': (0, str),
+    'duration': (0, _DURATION),
+    'starting_time': (0, _START),
+    'message_count': (0, _is_count),
+    'topics_with_message_count': (0, [_TOPIC]),
+    'compression_format': (3, str),
+    'compression_mode': (3, str),
+    'relative_file_paths': (0, [str]),
+    'files': (5, [_FILE]),
+    'custom_data': (6, _is_custom),
+    'ros_distro': (8, str),
+}
 
 
 def metadata_faults(
@@ -163,59 +141,38 @@ def lacking(information: Any) -> list[str]:
     information
         Content of ``rosbag2_bagfile_information``.
     """
-    version = information.get('version') if isinstance(information, dict) else None
-    return list(_bag(information, version if isinstance(version, int) else 0))
+    node = information if isinstance(information, dict) else {}
+    version = node.get('version')
+    return list(_lacking('', node, _BAG, version if isinstance(version, int) else 0))
 
 
-def _bag(node: Any, version: int) -> Iterator[str]:
-    yield from _keys('', node, BAG, version)
-    if not isinstance(node, dict):
-        return
-    yield from _keys('duration', node.get('duration'), DURATION, version)
-    yield from _keys('starting_time', node.get('starting_time'), START, version)
-    for number, topic in enumerate(_listed(node, 'topics_with_message_count')):
-        where = f'topics_with_message_count[{number}]'
-        yield from _keys(where, topic, TOPIC, version)
-        inner = topic.get('topic_metadata') if isinstance(topic, dict) else None
-        yield from _topic(f'{where}.topic_metadata', inner, version)
-    for number, file in enumerate(_listed(node, 'files') if version >= 5 else ()):
-        where = f'files[{number}]'
-        yield from _keys(where, file, FILE, version)
-        if isinstance(file, dict):
-            yield from _keys(f'{where}.duration', file.get('duration'), DURATION, version)
-            yield from _keys(f'{where}.starting_time', file.get('starting_time'), START, version)
+def _lacking(where: str, value: Any, wanted: _Wanted, version: int) -> Iterator[str]:
+    if wanted is _PROFILES and isinstance(value, str):
+        if version >= 9:
+            yield where
+        value = _parsed(value)
+    if isinstance(wanted, Mapping) and isinstance(value, dict):
+        for key, (since, inner) in wanted.items():
+            if version >= since:
+                path = f'{where}.{key}' if where else key
+                # No value of YAML is an ellipsis, so a missing key fits nothing.
+                yield from _lacking(path, value.get(key, ...), inner, version)
+    elif isinstance(wanted, list) and isinstance(value, list):
+        for number, item in enumerate(value):
+            yield from _lacking(f'{where}[{number}]', item, wanted[0], version)
+    elif not _fits(value, wanted):
+        yield where
 
 
-def _topic(where: str, node: Any, version: int) -> Iterator[str]:
-    yield from _keys(where, node, TOPIC_METADATA, version)
-    offered = node.get('offered_qos_profiles') if isinstance(node, dict) else None
-    if isinstance(offered, str) and version >= 9:
-        yield f'{where}.offered_qos_profiles'
-    if isinstance(offered, str):
-        offered = _parsed(offered)
-    for number, profile in enumerate(offered if isinstance(offered, list) else ()):
-        inner = f'{where}.offered_qos_profiles[{number}]'
-        yield from _keys(inner, profile, QOS, version)
-        for key in ('deadline', 'lifespan', 'liveliness_lease_duration'):
-            if isinstance(profile, dict):
-                yield from _keys(f'{inner}.{key}', profile.get(key), TIME, version)
+def _fits(value: Any, wanted: _Wanted) -> bool:
+    if isinstance(wanted, type):
+        return isinstance(value, wanted)
+    return callable(wanted) and wanted(value)
 
 
 def _parsed(text: str) -> Any:
+    """Return the profiles in a text of up to version 8; none in an empty one."""
     try:
-        return yaml.safe_load(text)
+        return yaml.safe_load(text) or []
     except yaml.YAMLError:
         return [None]
-
-
-def _listed(node: Mapping[str, Any], key: str) -> list[Any]:
-    value = node.get(key)
-    return value if isinstance(value, list) else []
-
-
-def _keys(
-    where: str, node: Any, wanted: Mapping[str, tuple[int, _Check]], version: int
-) -> Iterator[str]:
-    for key, (since, fits) in wanted.items():
-        if version >= since and not (isinstance(node, dict) and key in node and fits(node[key])):
-            yield f'{where}.{key}' if where else key

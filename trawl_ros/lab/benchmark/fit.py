@@ -22,7 +22,7 @@ from trawl_ros.lab.benchmark.fit_rivals import (
     FiniteDifferencePredictor,
     Searched,
 )
-from trawl_ros.lab.benchmark.gears import default_gear, with_around
+from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.running.timing import Part, shares, timed
@@ -115,7 +115,7 @@ class Fitted:
 def measure(quick: bool) -> Findings:
     """Fit by sensitivities, by differences, and by coordinate search."""
     gear = (
-        default_gear(quick=True) if quick else with_around(default_gear(quick=False), MESHES_AROUND)
+        default_gear(quick=True) if quick else default_gear(quick=False).with_around(MESHES_AROUND)
     )
     model, prior = build_model(gear), board_prior(gear)
     lengths, speeds = (LENGTHS[2:3], SPEEDS[1:2]) if quick else (LENGTHS, SPEEDS)

@@ -12,10 +12,4 @@ def default_gear(*, quick: bool) -> GearRecord:
     if not quick:
         return gear
     warp = gear.warp.model_copy(update={'segments': 6})
-    return with_around(gear.model_copy(update={'warp': warp}), 12)
-
-
-def with_around(gear: GearRecord, around: int) -> GearRecord:
-    """Return the gear with ``around`` meshes around its net, and rows of the matching length."""
-    netting = gear.netting.model_copy(update={'around': around})
-    return gear.model_copy(update={'netting': netting})
+    return gear.model_copy(update={'warp': warp}).with_around(12)

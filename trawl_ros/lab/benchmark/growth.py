@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.lab.benchmark.gears import default_gear, with_around
+from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.haul import START, haul_of
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings
@@ -67,7 +67,7 @@ def measure(quick: bool) -> Findings:
     gear = default_gear(quick=False)
     sizes, refused = [], 'no finer one was tried'
     for around in MESHES_AROUND[:2] if quick else MESHES_AROUND:
-        model = build_model(with_around(gear, around))
+        model = build_model(gear.with_around(around))
         try:
             sizes.append(_size(model, quick=quick))
         except (NoSteadyState, StepFailed) as error:

@@ -24,7 +24,7 @@ from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.lab.benchmark.gears import default_gear, with_around
+from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.benchmark.motion_instruments import (
     MOST_DRAWS,
     PLACES,
@@ -203,7 +203,7 @@ def measure(quick: bool) -> Findings:
     """Run the trials."""
     record = default_gear(quick=quick)
     if not quick:
-        record = with_around(record, MESHES_AROUND)
+        record = record.with_around(MESHES_AROUND)
     gear, factor = TowedGear(build_model(record)), PRIOR_STD_FACTOR * (0.2 if quick else 1.0)
     rows: list[MeasuredValue] = []
     seeds, duration = (SEEDS[:1], 80.0) if quick else (SEEDS, DURATION_S)

@@ -11,7 +11,7 @@ from statistics import median
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.lab.benchmark.gears import default_gear, with_around
+from trawl_ros.lab.benchmark.gears import default_gear
 from trawl_ros.lab.reference_codes.absent import PeerAbsent, PeerFailed
 from trawl_ros.lab.reference_codes.moordyn_web import Web, towed, web_of
 from trawl_ros.lab.report.measured import MeasuredValue
@@ -102,7 +102,7 @@ def measure(quick: bool) -> Findings:
 
 
 def _smaller(scheme: str, damping: float) -> MeasuredValue:
-    model = build_model(with_around(default_gear(quick=False), COARSE_AROUND))
+    model = build_model(default_gear(quick=False).with_around(COARSE_AROUND))
     found = best_of(_stable(model, ((scheme, damping),), quick=False))
     note = f'a net of {COARSE_AROUND} meshes around, {len(model.ends)} lines, {model.nodes} points'
     return MeasuredValue('the same on a smaller web', found.factor, '× real time', note=note)

@@ -3,40 +3,44 @@
 """``trawl benchmark``: measure the speed, compare it with other codes, and write the report."""
 
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 
 import click
 
 from trawl_ros.cli.options import FORCE_OPTION, REPORT_OPTION
-from trawl_ros.core.files import empty_folder, finite
+from trawl_ros.core.files import empty_folder
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.lab.benchmark.modules import NAMES, TITLES, check_names, measure
 from trawl_ros.lab.commands.outcome import print_missed, print_reached, stoppable
 from trawl_ros.lab.report.machine import blas_threads, cpu_model, software
 from trawl_ros.lab.report.measured import MeasuredValue
-from trawl_ros.lab.report.page import Findings, Page, Section, write_page
+from trawl_ros.lab.report.page import Page, Section, write_page
 from trawl_ros.report.pictures import draw
 
 NAME, COMMAND = 'benchmark', 'trawl benchmark'
 SMALL = 'It ran in its small version, which shows that it runs and says nothing about speed. '
 
 
-@dataclass(frozen=True)
-class MeasuredModule:
-    """Findings of one module, with its wall-clock time, s."""
-
-    name: str
-    findings: Findings
-    seconds: float
+def measured_section(name: str, folder: Path, *, quick: bool) -> Section:
+    """Run one module and draw its figures into a folder."""
+    began = time.perf_counter()
+    findings = measure(name, quick=quick)
+    seconds = time.perf_counter() - began
+    return Section(
+        TITLES[name],
+        findings.rows,
+        draw(folder, findings.drawings, f'{NAME}/{name}_'),
+        text=findings.text,
+        command=f'{COMMAND} {name}',
+        seconds=seconds,
+    )
 
 
 def write_benchmark(
-    folder: Path, measured: Sequence[MeasuredModule], *, quick: bool
+    folder: Path, sections: Mapping[str, Section], *, quick: bool
 ) -> list[MeasuredValue]:
-    """Write ``benchmark.json``, ``.md``, ``.html`` and figures into a folder; return the rows."""
-    ordered = sorted(measured, key=lambda module: NAMES.index(module.name))
+    """Write ``benchmark.json``, ``.md`` and ``.html`` into a folder; return the rows."""
     versions = ', '.join(f'{name} {version}' for name, version in software().items())
     page = Page(
         name=NAME,
@@ -48,31 +52,7 @@ def write_benchmark(
         'together, and medians over repeats unless it says that something ran once; where it says '
         'wall, they are wall-clock times, which other work on the machine lengthens.',
     )
-    sections = [
-        Section(
-            TITLES[module.name],
-            module.findings.rows,
-            draw(folder, module.findings.drawings, f'{NAME}/{module.name}_'),
-            text=module.findings.text,
-            command=f'{COMMAND} {module.name}',
-            seconds=module.seconds,
-        )
-        for module in ordered
-    ]
-    rows = [row_record(row) for section in sections for row in section.rows]
-    return write_page(folder, page, sections, record={'rows': rows})
-
-
-def row_record(row: MeasuredValue) -> dict[str, object]:
-    """Return a row as plain values; unmeasured values are null."""
-    return {
-        'what': row.what,
-        'value': finite(row.value),
-        'unit': row.unit,
-        'target': None if row.target is None else row.target.expected,
-        'ok': row.ok,
-        'note': row.note,
-    }
+    return write_page(folder, page, [sections[name] for name in NAMES if name in sections])
 
 
 @click.command('benchmark')
@@ -92,15 +72,13 @@ def command(names: tuple[str, ...], out: Path, force: bool, quick: bool) -> None
     chosen = tuple(dict.fromkeys(names)) or NAMES
     check_names(chosen)
     empty_folder(out, force=force)
-    measured: list[MeasuredModule] = []
+    sections: dict[str, Section] = {}
     with stoppable() as (display, console):
         for number, name in enumerate(chosen):
             display(WorkProgress('measuring', number, len(chosen), 'modules', TITLES[name]))
-            began = time.perf_counter()
-            findings = measure(name, quick=quick)
-            measured.append(MeasuredModule(name, findings, time.perf_counter() - began))
-            for row in findings.rows:
+            sections[name] = measured_section(name, out, quick=quick)
+            for row in sections[name].rows:
                 wanted = f', asked for {row.wanted}' if row.target is not None else ''
                 console.print(f'{name}: {row.what}: {row.figure}{wanted}', markup=False)
-            print_missed(findings.rows, console)
-    print_reached(write_benchmark(out, measured, quick=quick), out / f'{NAME}.md')
+            print_missed(sections[name].rows, console)
+    print_reached(write_benchmark(out, sections, quick=quick), out / f'{NAME}.md')

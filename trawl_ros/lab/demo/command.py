@@ -2,16 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """``trawl demo``: the whole chain through the real ROS graph, one process per node."""
 
-import json
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 from rich.console import Console
-from rich.table import Table
 
 from trawl_ros.api import trials
 from trawl_ros.bags.reader import summarise
@@ -22,12 +20,17 @@ from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.files import write_figure
 from trawl_ros.core.progress import WorkProgress
 from trawl_ros.core.resources import packaged
-from trawl_ros.estimation.report.motion import motion_lines, motion_table
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.lab.demo.folder import DemoFolder
 from trawl_ros.lab.demo.hidden import hidden_effect
 from trawl_ros.lab.demo.short_tows import diagnose_short_tows
-from trawl_ros.lab.demo.summary import finding_lines, refitted_line
+from trawl_ros.lab.demo.summary import (
+    finding_lines,
+    load_result,
+    print_motion,
+    print_result,
+    refitted_line,
+)
 from trawl_ros.lab.running.chain import start_chain, stop_chain
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import Processes
@@ -50,6 +53,12 @@ if TYPE_CHECKING:
     from trawl_ros.lab.running.monitor import Monitor
 
 
+LOOK_S = 0.2
+PAGES = ('history.png', 'gear.png', 'report.html')
+HIDDEN_PAGES = ('hidden/report.html', 'hidden/gap.png', 'hidden/model.yaml')
+SYSTEMS = ('marport', 'scantrol', 'ship')
+
+
 @dataclass
 class Steps:
     """Steps of the demo, each announced with about how long it takes on two idle cores."""
@@ -62,73 +71,6 @@ class Steps:
         """Announce the next step."""
         self.number += 1
         self.console.print(f'{self.number} of {self.total}: {what}, about {about_s:g} s')
-
-
-def load_result(folder: Path) -> dict[str, Any]:
-    """Read ``identification.json`` of a folder.
-
-    Raises
-    ------
-    TrawlError
-        If it is not there.
-    """
-    path = folder / 'identification.json'
-    try:
-        return dict(json.loads(path.read_text(encoding='utf-8')))
-    except (OSError, ValueError) as reason:
-        raise TrawlError(
-            f'{path}: cannot be read; expected the report of the identification'
-        ) from reason
-
-
-def print_result(result: Mapping[str, Any], truth: Mapping[str, float]) -> None:
-    """Print the coefficients next to the true ones, and the errors per channel."""
-    console = Console(highlight=False, soft_wrap=True)
-    table = Table(title=f'Board coefficients from {result["windows"]} steady windows')
-    table.add_column('', style='bold')
-    for heading in ('start', 'value', 'low', 'high', 'true', 'in interval', 'determined'):
-        table.add_column(heading, justify='right')
-    for name, entry in result['coefficients'].items():
-        numbers = [entry[key] for key in ('start', 'value', 'low', 'high')]
-        inside = entry['low'] <= truth[name] <= entry['high']
-        table.add_row(
-            name,
-            *(f'{number:.3f}' for number in (*numbers, truth[name])),
-            'yes' if inside else 'no',
-            'yes' if entry['determined'] else 'no',
-        )
-    console.print(table)
-    table = Table(title='Mean error over mean measured value')
-    table.add_column('', style='bold')
-    for heading in ('before', 'after', 'held out'):
-        table.add_column(heading, justify='right')
-    for name, entry in result['channels'].items():
-        errors = (entry[f'mnae_{key}'] for key in ('start', 'end', 'held_out'))
-        table.add_row(name.replace('_', ' '), *map(_percent, errors))
-    console.print(table)
-    objective = ', '.join(f'{value:.4f} at the {key}' for key, value in result['objective'].items())
-    console.print(f'Objective of eq. 35: {objective}.')
-
-
-def print_motion(report: Report, duration_s: float) -> None:
-    """Print the estimate from the whole tow of a duration (s), or why there is none."""
-    console = Console(highlight=False, soft_wrap=True)
-    if report.motion is not None:
-        counted = f'{report.motion.duration_s / 60:.0f} of {duration_s / 60:.0f} min'
-        console.print(f'The whole tow was used, hauling included: {counted}.', style='bold')
-        console.print(motion_table(report))
-    for line in motion_lines(report):
-        console.print(line, markup=False)
-
-
-def _percent(value: float | None) -> str:
-    return '–' if value is None else f'{100.0 * value:.1f} %'
-
-
-LOOK_S = 0.2
-PAGES = ('history.png', 'gear.png', 'report.html')
-HIDDEN_PAGES = ('hidden/report.html', 'hidden/gap.png', 'hidden/model.yaml')
-SYSTEMS = ('marport', 'scantrol', 'ship')
 
 
 @dataclass(frozen=True)
@@ -306,7 +248,7 @@ def _replay(
     processes.start(
         'identification_node',
         use_sim_time=True,
-        gear=_gear_file(scenario),
+        gear=str(scenario.gear_file),
         truth=path,
         # At this speed the whole tow is fitted afterwards, from the bag.
         motion=False,
@@ -341,20 +283,13 @@ def _learn(scenario: Scenario, folder: DemoFolder, console: Console) -> Report:
     with ProgressDisplay(console) as display:
         found = trials.identify(
             [folder.bag],
-            gear=_gear_file(scenario),
+            gear=scenario.gear_file,
             truth=scenario.path,
             out=folder.results,
             on_progress=display,
         )
     folder.gather_results()
     return found
-
-
-def _gear_file(scenario: Scenario) -> str:
-    """Path of the scenario's gear file for a process in another folder."""
-    name = scenario.record.gear
-    beside = scenario.path.parent / name
-    return str(beside) if name.endswith(('.yaml', '.yml')) else name
 
 
 def _view(scenario: Scenario, folder: DemoFolder, console: Console) -> None:

@@ -121,9 +121,7 @@ class Finding:
         )
 
 
-def diagnose_short_tows(
-    folder: Path, on_progress: OnProgress, short: ShortTows | None = None
-) -> Finding:
+def diagnose_short_tows(folder: Path, on_progress: OnProgress) -> Finding:
     """Make the tows, diagnose them, and write report, pictures and repaired gear to ``folder``.
 
     Raises
@@ -131,7 +129,7 @@ def diagnose_short_tows(
     TrawlError
         If nothing is named.
     """
-    short = short or ShortTows()
+    short = ShortTows()
     windows, known = tuple(short.windows()), frozenset({0})
     gear = short.mesh.model(short.gear)
     found = diagnose_windows(gear, windows, short.names, known, on_progress)

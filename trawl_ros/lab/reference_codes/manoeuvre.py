@@ -11,6 +11,7 @@ from math import cos, pi, sin
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.lab.reference_codes.towed_wire import WIRE
 
 
 @dataclass(frozen=True)
@@ -173,15 +174,15 @@ class WireManoeuvre:
         return np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
 
 
-def haul_and_turn(length: float = 600.0, speed: float = 2.0) -> WireManoeuvre:
+def haul_and_turn() -> WireManoeuvre:
     """Haul 200 m at 0.5 m/s, then turn by 90° at 0.5°/s, each from and to a steady pace."""
     haul = Pace(start=20.0, total=-200.0, top=-0.5, rise=10.0)
     turn = Pace(start=haul.end + 55.0, total=pi / 2, top=TURN_RATE, rise=20.0)
-    return WireManoeuvre(length, speed, haul, turn, duration=turn.end + 220.0)
+    return WireManoeuvre(WIRE.length, WIRE.speed, haul, turn, duration=turn.end + 220.0)
 
 
-def short_manoeuvre(length: float = 600.0, speed: float = 2.0) -> WireManoeuvre:
+def short_manoeuvre() -> WireManoeuvre:
     """Return a short version: 10 m of hauling and 20° of turn."""
     haul = Pace(start=5.0, total=-10.0, top=-0.5, rise=10.0)
     turn = Pace(start=haul.end, total=pi / 9, top=TURN_RATE, rise=20.0)
-    return WireManoeuvre(length, speed, haul, turn, duration=turn.end + 10.0)
+    return WireManoeuvre(WIRE.length, WIRE.speed, haul, turn, duration=turn.end + 10.0)

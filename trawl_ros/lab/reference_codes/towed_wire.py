@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Towed wire of the comparisons: its properties and its steady state."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
 
@@ -72,6 +73,9 @@ class WireSteadyState:
     lag: float
     tension: float
 
+
+UNITS: Mapping[str, str] = {'depth': 'm', 'lag': 'm', 'tension': 'N'}
+"""Unit of each number of a steady state."""
 
 INTEGRATED = WireSteadyState(depth=335.307, lag=498.191, tension=41_042.0)
 """Steady state of `WIRE` by integration of the equation of an elastic wire."""

@@ -169,7 +169,7 @@ class PlannedCloth:
             panel: max(min(high, end) - max(low, start), 0.0) / width
             for panel, (start, end) in cuts.items()
         }
-        if row.back <= 1e-9:
+        if row.in_wing:
             wing = self.mouth.wing_at(2 * self.mouth.around * place)
             inside = self._inside(row, low, high)
             scale = max(inside, LEAST_COLUMN_FRACTION) / max(sum(shares.values()), 1e-12)
@@ -201,7 +201,7 @@ class PlannedCloth:
 
     def _column(self, panel: str, row: NettingRow, wing: int) -> dict[str, float]:
         if (panel, row, wing) not in self.known:
-            if row.back <= 1e-9:
+            if row.in_wing:
                 scale = self.mouth.scales[wing]
                 front, back = -scale * row.back, -scale * row.front
                 sums = self.wings[panel].per_mesh_column(front, back, row.columns)

@@ -40,6 +40,11 @@ class NettingRow:
         return self.back - self.front
 
     @property
+    def in_wing(self) -> bool:
+        """True for a row ahead of the mouth, with a margin for rounding."""
+        return self.back <= 1e-9
+
+    @property
     def columns(self) -> int:
         """Number of real meshes around, of two bars each, that the row's bars stand for."""
         return self.around // 2 if self.joins else self.around

@@ -53,11 +53,13 @@ def sheets_of(bars: list[NetBar], positions: FloatArray) -> NetSheets:
         pairs = [there for there in sides if len(there) == 2]
         if not pairs or max(map(len, sides)) > 2 or not any(own):
             continue
+        # d₁ = mean place of the nodes behind - of those ahead; an end without nodes is the node.
         long, wide = dict.fromkeys([node, *sides[0], *sides[1]], 0.0), {}
         for there, sign in zip(sides, (-1.0, 1.0), strict=True):
             for k in there or [node]:
                 long[k] += sign / max(len(there), 1)
-        # A node has half of the area between the nodes tied to it.
+        # d₂ = half of (right - left), the mean of ahead and behind: a node has half of the area
+        # |d₁ × d₂| between the nodes tied to it.
         for left, right in pairs:
             wide[left] = -0.5 / len(pairs)
             wide[right] = 0.5 / len(pairs)

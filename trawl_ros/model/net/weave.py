@@ -13,6 +13,10 @@ from trawl_ros.model.net.kite_nodes import KiteNodes
 from trawl_ros.model.net.planned_mouth import FrameRope
 from trawl_ros.model.net.rows import NettingRow, Profile
 
+FIRST_OPENING, FIRST_LENGTH, FIRST_HEIGHT = 0.4, 0.85, 0.6
+"""Shape of a net as drawn, before any force: its circumference and length over the stretched ones,
+and its height over its width. Meshes are slack, so the first step does not overstretch them."""
+
 
 @dataclass(frozen=True)
 class NetBar:
@@ -132,16 +136,16 @@ def weave(
 
     def add(edge: int, x: float, around: int, odd: bool) -> None:
         _, circumference = body.at(x)
-        radius = 0.4 * circumference / (2 * np.pi)
+        radius = FIRST_OPENING * circumference / (2 * np.pi)
         for j in range(around):
             if edge >= 0 or holds(edge, j):
                 phi = (j + 0.5 * odd) * 2 * np.pi / around
                 made.index[edge, j] = len(made.positions)
                 made.positions.append(
                     (
-                        -0.85 * (x - ahead),
+                        -FIRST_LENGTH * (x - ahead),
                         radius * np.sin(phi),
-                        0.6 * radius * np.cos(phi),
+                        FIRST_HEIGHT * radius * np.cos(phi),
                     )
                 )
 

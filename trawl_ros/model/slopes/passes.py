@@ -59,7 +59,11 @@ def add_bar_inertia_slopes(
     slots: IntArray,
     data: FloatArray,
 ) -> None:
-    """Add the derivatives of `add_bar_inertia` by the positions, for the plain bars ``wanted``."""
+    """Add the derivatives of `add_bar_inertia` by the positions, for the plain bars ``wanted``.
+
+    As a bar of vector r and unit vector t turns, its added mass changes by that of t tᵀ a:
+    ∂(t tᵀ a)/∂r = (t aᵀ + (t · a) I - 2 (t · a) t tᵀ) / |r|.
+    """
     volume, added_normal, added_tangential = bars[3], bars[8], bars[9]
     along = np.empty(3)
     for number in range(len(plain)):

@@ -117,6 +117,7 @@ def _trees(touched: list[IntArray], sequence: IntArray) -> list[_Front]:
 
 
 def _join_children(front: _Front) -> None:
+    """Merge children into a front, the cheapest first, as long as they add few zeros."""
     while front.children:
         size = len(front.pivots) + len(front.border)
         zeros = [len(child.pivots) * (size - len(child.border)) for child in front.children]
@@ -140,6 +141,7 @@ def _postordered(roots: list[_Front]) -> list[_Front]:
 
 
 def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]) -> Elimination:
+    """Number blocks in the order of elimination, and describe the fronts by these numbers."""
     pivots = np.array([len(front.pivots) for front in fronts])
     firsts = np.cumsum(pivots) - pivots
     by_sequence = np.concatenate([front.pivots for front in fronts])
@@ -183,6 +185,7 @@ def _numbered(pattern: SparsityPattern, sequence: IntArray, fronts: list[_Front]
 
 
 def _unknowns(blocks: IntArray) -> IntArray:
+    """Return the numbers of the unknowns of blocks, one after the other."""
     unknowns: IntArray = (
         UNKNOWNS_PER_BLOCK * blocks[:, None] + np.arange(UNKNOWNS_PER_BLOCK)
     ).ravel()
@@ -230,6 +233,7 @@ def _assembly(
 
 
 def _most_waiting(table: IntArray, edges: IntArray) -> int:
+    """Return the largest number of values that wait on the stack, child by child taken off it."""
     stack: list[int] = []
     held = most = 0
     for children, edge in zip(table[:, 2], edges, strict=True):

@@ -137,7 +137,7 @@ def draw_board(
     False
     """
     gear.require_boards('that could be drawn')
-    coarse = build(_with_around(gear, min(options.around, gear.netting.around)))
+    coarse = build(gear.with_around(min(options.around, gear.netting.around)))
     rejected: Counter[str] = Counter()
     for _ in range(options.most_draws):
         coefficients = _drawn(gear, rng, options.std_factor)
@@ -232,8 +232,3 @@ def _nearest(found: dict[Place, Equilibrium], place: Place) -> Equilibrium | Non
         return None
     near = min(found, key=lambda other: abs(other[0] / place[0] - 1) + abs(other[1] / place[1] - 1))
     return found[near]
-
-
-def _with_around(gear: GearRecord, around: int) -> GearRecord:
-    netting = gear.netting.model_copy(update={'around': around})
-    return gear.model_copy(update={'netting': netting})

@@ -38,6 +38,15 @@ MAX_HOLE_OFFSETS = 0.47, 0.2, 0.46
 """Largest distance of a hole from the centre of gravity: along the chord and off the face, where a
 bracket carries it (both in chords), and along the span (in spans)."""
 
+SOFT_BOARD_PENALTY = 1e4
+"""Merit (squared rotations) of a board that is too soft: far above that of stiff ones."""
+
+SHRINKING = 0.3
+"""Factor on the trust region's reach after a step to a worse rigging or to one without a shape."""
+
+CONVERGED_GAIN = 1e-3
+"""Relative gain of a step after which the search ends."""
+
 BOUND_TOLERANCE_M = 1e-3
 """Distance from its bound at which a coordinate counts as on it."""
 
@@ -274,7 +283,7 @@ def _merit(
         values = np.linalg.eigvals(axes) / (force * chord)
         softest = float((values.real - OPTIONS.flutter_ratio * np.abs(values.imag)).min())
         if softest < OPTIONS.min_stiffness:
-            total += 1e4 * (1.0 + OPTIONS.min_stiffness - softest)
+            total += SOFT_BOARD_PENALTY * (1.0 + OPTIONS.min_stiffness - softest)
             continue
         # Unknown moments are the same on both boards, so the mirrored stiffness counts.
         left = np.column_stack([held.turn.T @ moment, unknown * chord * force * np.eye(3)])
@@ -309,16 +318,16 @@ def _searched(held: HeldGear, start: FloatArray, unknown: float) -> FloatArray:
         try:
             there = held.boards(trial)
         except NoSteadyState:
-            held.states, reach = states, 0.3 * reach
+            held.states, reach = states, SHRINKING * reach
             continue
         worth = _merit(held, there, trial, unknown)
         if worth < value:
-            converged = value - worth < 1e-3 * value
+            converged = value - worth < CONVERGED_GAIN * value
             points, boards, states, value = trial, there, held.states, worth
             if converged:
                 break
         else:
-            held.states, reach = states, 0.3 * reach
+            held.states, reach = states, SHRINKING * reach
     held.states = states
     return points
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from trawl_ros.lab.validation.convergence.gears import differences
-from trawl_ros.lab.validation.convergence.refinement import CASE
+from trawl_ros.lab.validation.convergence.refinement import CASE, differences
 from trawl_ros.records.observables import OBSERVABLES
 
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.branches.lattices import ANGLES, SPEED
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe, outward_normal_lift
@@ -79,53 +80,29 @@ class BranchLimit:
 def sweeps(model: GearModel, lengths: Sequence[float], angles: bool) -> Iterator[ParameterSweep]:
     """The branches to follow: over speed, warp length, and installation angles both ways."""
     for length in lengths:
-        yield ParameterSweep(
-            f'speed at {length:g} m',
-            'm/s',
-            partial(_place, model, length),
-            SPEED,
-            -0.1,
-            1.4,
-            3.0,
-        )
+        family = partial(_place, model, length)
+        yield ParameterSweep(f'speed at {length:g} m', 'm/s', family, SPEED, -0.1, 1.4, 3.0)
     if not angles:
         return
     for sign in (-1.0, 1.0):
-        yield ParameterSweep(
-            f'warp length {"hauled" if sign < 0 else "veered"}',
-            'm',
-            partial(_hauled, model),
-            MIDDLE,
-            sign * 50.0,
-            100.0,
-            1000.0,
-        )
-    for index, name in enumerate(ANGLES):
+        name, family = f'warp length {"hauled" if sign < 0 else "veered"}', partial(_place, model)
+        yield ParameterSweep(name, 'm', family, MIDDLE, sign * 50.0, 100.0, 1000.0)
+    for index, angle in enumerate(ANGLES):
+        family = partial(_turned, model, index)
         for sign in (-1.0, 1.0):
-            yield ParameterSweep(
-                f'{name} {"<" if sign < 0 else ">"} 0',
-                '°',
-                partial(_turned, model, index),
-                0.0,
-                sign * 2.5,
-                -20.0,
-                20.0,
-            )
+            name = f'{angle} {"<" if sign < 0 else ">"} 0'
+            yield ParameterSweep(name, '°', family, 0.0, sign * 2.5, -20.0, 20.0)
 
 
-def _place(model: GearModel, length: float, speed: float) -> tuple[GearModel, Tow]:
+def _place(model: GearModel, length: float, speed: float = SPEED) -> tuple[GearModel, Tow]:
     return model, steady_tow(model, OperatingPoint(length, length, speed))
-
-
-def _hauled(model: GearModel, length: float) -> tuple[GearModel, Tow]:
-    return _place(model, length, SPEED)
 
 
 def _turned(model: GearModel, index: int, degrees: float) -> tuple[GearModel, Tow]:
     installation = np.zeros(3)
     installation[index] = np.radians(degrees)
     turned = model.with_board(installation=tuple(installation))
-    return _place(turned, MIDDLE, SPEED)
+    return _place(turned, MIDDLE)
 
 
 def followed_branch(sweep: ParameterSweep, most: int) -> BranchCurve:
@@ -257,8 +234,7 @@ def _table(found: list[tuple[BranchCurve, list[BranchLimit]]]) -> TextTable:
 
 def _figure(found: list[tuple[BranchCurve, list[BranchLimit]]]) -> Figure:
     units = list(dict.fromkeys(curve.sweep.unit for curve, _ in found))
-    figure = Figure(figsize=(4.6 * len(units) + 1.0, 4.6), layout='constrained')
-    panels = figure.subplots(1, len(units), squeeze=False)[0]
+    figure, panels = panes(4.6 * len(units) + 1.0, 4.6, 1, len(units))
     for axes, unit in zip(panels, units, strict=True):
         for number, (curve, ends) in enumerate(one for one in found if one[0].sweep.unit == unit):
             stable = curve.worst.real < 0.0
@@ -270,7 +246,6 @@ def _figure(found: list[tuple[BranchCurve, list[BranchLimit]]]) -> Figure:
                 mark = 'o' if end.kind == 'fold' else 'x'
                 axes.plot(end.value, end.inclination, mark, color=color)
         axes.set_xlabel({'m/s': 'speed (m/s)', 'm': 'warp (m)'}.get(unit, 'angle (°)'))
-        axes.grid(alpha=0.3)
         axes.legend(fontsize='small')
     panels[0].set_ylabel('inclination δ (°)')
     return figure

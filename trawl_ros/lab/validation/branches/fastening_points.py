@@ -39,8 +39,7 @@ def run(quick: bool) -> Findings:
     """Trim the gear with its warp point farther forward, and compare."""
     gear = load_gear('kaifuha')
     if quick:
-        netting = gear.netting.model_copy(update={'around': 12})
-        gear = gear.model_copy(update={'netting': netting})
+        gear = gear.with_around(12)
     shipped = build_model(gear)
     leans = {'shipped': leaned(shipped)}
     rows = [_fold_row('shipped', 'shipped', _folds(shipped))]

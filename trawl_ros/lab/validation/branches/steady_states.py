@@ -171,8 +171,7 @@ def run(quick: bool) -> Findings:
     size = SMALL if quick else FULL
     gear = load_gear('kaifuha')
     if quick:
-        coarse = gear.netting.model_copy(update={'around': 12})
-        gear = gear.model_copy(update={'netting': coarse})
+        gear = gear.with_around(12)
     model = build_model(gear)
     # Compiling at first use is no time of an answer.
     middle = find_equilibrium(model, OperatingPoint(MIDDLE, MIDDLE, SPEED))

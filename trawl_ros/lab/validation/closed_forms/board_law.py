@@ -15,6 +15,7 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.paper_board import PaperBoard, coefficients
 from trawl_ros.model.assembly import board_loads, points_of
@@ -219,14 +220,12 @@ def _continuation_checks(record: BoardRecord) -> list[MeasuredValue]:
 
 
 def _drawn(record: BoardRecord) -> Figure:
-    figure = Figure(figsize=(8.4, 4.2), layout='constrained')
+    figure, every = panes(8.4, 4.2, 1, 2)
     fine, dots = np.linspace(-90.0, 120.0, 421), np.linspace(-90.0, 120.0, 43)
     curves = coefficients_at(record.coefficients.array(), np.radians(fine), np.zeros_like(fine))
     points = np.array([coefficients(record, np.radians(alpha), 0.0) for alpha in dots])
     names = ('$C_x^F$', '$C_y^F$', '$C_z^F$', '$C_x^M$', '$C_y^M$', '$C_z^M$')
-    for axes, group, title in zip(
-        figure.subplots(1, 2), ((0, 1, 2), (3, 4, 5)), ('force', 'moment'), strict=True
-    ):
+    for axes, group, title in zip(every, ((0, 1, 2), (3, 4, 5)), ('force', 'moment'), strict=True):
         for k in group:
             (curve,) = axes.plot(fine, curves[:, k], '-', label=names[k])
             axes.plot(dots, points[:, k], 'o', ms=3, color=curve.get_color())
@@ -234,7 +233,6 @@ def _drawn(record: BoardRecord) -> Figure:
         for edge in (0.0, 40.0):
             axes.axvline(edge, color='k', ls=':', lw=1)
         axes.set(xlabel='attack angle α [°]', ylabel=f'{title} coefficient [-]')
-        axes.grid(alpha=0.3)
         axes.legend()
     return figure
 

@@ -13,6 +13,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, lone_line, settled
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import order, refinement_figure
 from trawl_ros.model.assembly import block_forces
@@ -173,48 +174,29 @@ def _hanging_checks() -> list[MeasuredValue]:
     loaded_stretch, loaded_pull = hanging(CLAIMED, HUNG_LOAD)
     alone = 'a wire of 600 m hanging alone'
     under = 'a wire of 600 m hanging with 20 kN at its end, 20 segments'
+    weight, exact = WEIGHT * HANGING_LENGTH, stretch_of_hanging(0.0)
+    rounding = (
+        'w L² / 2 EA less the rounding between slack and taut, in closed form. There strain is a '
+        'square root of tension, which makes this figure of order 1.5 only'
+    )
+    letter = '(P L + w L² / 2) / EA; taut all along, so eq. 20 holds to the letter'
+    loaded = stretch_of_hanging(HUNG_LOAD)
+    rows = (
+        ('hanging_depth', f'depth of the end of {alone}, 20 segments', HANGING_LENGTH + stretch,
+         'm', 1e-5, HANGING_LENGTH + exact, 'L + w L² / 2 EA'),
+        ('hanging_stretch', f'stretch of {alone}, 40 segments', fine, 'm',
+         1e-3, exact - rounded_off(), rounding),
+        ('hanging_tension', f'pull at the block of {alone}, 20 segments', pull, 'N',
+         1e-6, weight, 'the weight of the wire'),
+        ('loaded_stretch', f'stretch of {under}', loaded_stretch, 'm', 1e-6, loaded, letter),
+        ('loaded_tension', f'pull at the block of {under}', loaded_pull, 'N',
+         1e-6, HUNG_LOAD + weight, 'the weight of wire and load'),
+    )  # fmt: skip
     return [
         MeasuredValue(
-            f'depth of the end of {alone}, 20 segments',
-            HANGING_LENGTH + stretch,
-            'm',
-            within_share(1e-5, of=HANGING_LENGTH + stretch_of_hanging(0.0)),
-            'Expected: L + w L² / 2 EA.',
-            key='hanging_depth',
-        ),
-        MeasuredValue(
-            f'stretch of {alone}, 40 segments',
-            fine,
-            'm',
-            within_share(1e-3, of=stretch_of_hanging(0.0) - rounded_off()),
-            'Expected: w L² / 2 EA less the rounding between slack and taut, in closed form. '
-            'There strain is a square root of tension, which makes this figure of order 1.5 only.',
-            key='hanging_stretch',
-        ),
-        MeasuredValue(
-            f'pull at the block of {alone}, 20 segments',
-            pull,
-            'N',
-            within_share(1e-6, of=WEIGHT * HANGING_LENGTH),
-            'Expected: the weight of the wire.',
-            key='hanging_tension',
-        ),
-        MeasuredValue(
-            f'stretch of {under}',
-            loaded_stretch,
-            'm',
-            within_share(1e-6, of=stretch_of_hanging(HUNG_LOAD)),
-            'Expected: (P L + w L² / 2) / EA; taut all along, so eq. 20 holds to the letter.',
-            key='loaded_stretch',
-        ),
-        MeasuredValue(
-            f'pull at the block of {under}',
-            loaded_pull,
-            'N',
-            within_share(1e-6, of=HUNG_LOAD + WEIGHT * HANGING_LENGTH),
-            'Expected: the weight of wire and load.',
-            key='loaded_tension',
-        ),
+            what, value, unit, within_share(share, of=wanted), f'Expected: {why}.', key=key
+        )
+        for key, what, value, unit, share, wanted, why in rows
     ]
 
 
@@ -246,12 +228,10 @@ def _sagging_checks(model: Sagging, exact: Sagging) -> list[MeasuredValue]:
 
 
 def _shape(model: Sagging) -> Figure:
-    figure = Figure(figsize=(6.4, 3.6), layout='constrained')
-    axes = figure.add_subplot()
+    figure, (axes,) = panes(6.4, 3.6)
     axes.plot(*elastic_catenary(200).places[:, [0, 2]].T, '-', label='elastic catenary')
     axes.plot(*model.places[:, [0, 2]].T, 'o', ms=4, label=f'model, {CLAIMED} segments')
     axes.set(xlabel='x [m]', ylabel='above the surface [m]', aspect='equal')
-    axes.grid(alpha=0.3)
     axes.legend()
     return figure
 

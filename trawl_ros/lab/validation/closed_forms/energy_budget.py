@@ -13,6 +13,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.power import STORES, WORKS, Ledger
 from trawl_ros.lab.validation.closed_forms.refinement import order
@@ -161,7 +162,7 @@ def run(quick: bool) -> Findings:
     """Haul with decreasing steps."""
     gear = load_gear('kaifuha')
     if quick:
-        gear = gear.model_copy(update={'netting': gear.netting.model_copy(update={'around': 12})})
+        gear = gear.with_around(12)
     haul = WireHaul(8.0, 50.0) if quick else WireHaul(50.0, 300.0)
     steps = STEPS[:2] if quick else STEPS
     model = build_model(gear)
@@ -269,8 +270,7 @@ def _residuals(budgets: dict[float, Budget], left: list[float]) -> TextTable:
 
 
 def _drawn(budgets: dict[float, Budget], haul: WireHaul) -> Figure:
-    figure = Figure(figsize=(9.6, 8.0), layout='constrained')
-    above, middle, below = figure.subplots(3, 1, sharex=True)
+    figure, (above, middle, below) = panes(9.6, 8.0, 3, sharex=True)
     found = budgets[USUAL]
     works = dict(zip(WORKS, 1e-6 * found.works.T, strict=True))
     water = sum(works[key] for key in WORKS if key.endswith('_drag') or key == 'added_mass')
@@ -289,7 +289,6 @@ def _drawn(budgets: dict[float, Budget], haul: WireHaul) -> Figure:
     below.set(ylabel='missing in the budget [J]', xlabel='time [s]')
     for axes in (above, middle, below):
         axes.axvspan(STEADY_TOW_S, STEADY_TOW_S + haul.wire / RATE + RAMP, color='k', alpha=0.07)
-        axes.grid(alpha=0.3)
         axes.legend(loc='center left', bbox_to_anchor=(1.0, 0.5))
     return figure
 

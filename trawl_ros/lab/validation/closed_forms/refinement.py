@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.lab.report.panes import panes
+
 
 def order(segments: Sequence[int], errors: Sequence[float]) -> float:
     """Return the order of convergence: logarithmic slope of the errors over segment length."""
@@ -17,8 +19,7 @@ def refinement_figure(
     segments: Sequence[int], errors: Mapping[str, Sequence[float]], title: str
 ) -> Figure:
     """Draw relative errors over segments, both logarithmic, with a line of second order."""
-    figure = Figure(figsize=(6.4, 4.6), layout='constrained')
-    axes = figure.add_subplot()
+    figure, (axes,) = panes(6.4, 4.6)
     for (label, values), mark in zip(errors.items(), 'osd^v', strict=False):
         axes.loglog(
             segments, values, mark + '-', label=f'{label}: order {order(segments, values):.2f}'
@@ -29,6 +30,5 @@ def refinement_figure(
     axes.set(title=title, xlabel='segments', ylabel='relative error')
     axes.set_xticks(segments, [str(number) for number in segments], minor=False)
     axes.minorticks_off()
-    axes.grid(alpha=0.3)
     axes.legend()
     return figure

@@ -11,6 +11,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, lone_line, lying
 from trawl_ros.lab.report.measured import MeasuredValue, at_most, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.model.assembly import forces, mass
 from trawl_ros.report.pictures import Drawing
@@ -107,7 +108,12 @@ def run(quick: bool) -> Findings:
     level, sloping = (found[slope] for slope in SLOPES)
     across_level = terminal(0.0)[1]
     along, across = terminal(np.radians(SLOPES[1]))
-    law = 'Expected: the speed at which drag carries the weight, '
+    sloped = 'a line that slopes by 30°'
+    last = (
+        ('level', 'sinking speed of a level line', level, 1, across_level, 'w = ½ ρ C_n d U²'),
+        ('sloping_across', f'speed across {sloped}', sloping, 1, across, 'w cos φ = ½ ρ C_n d U²'),
+        ('sloping_along', f'speed along {sloped}', sloping, 0, along, 'w sin φ = ½ ρ C_t π d U²'),
+    )
     history = {
         slope: float(
             np.abs(line.velocities - fall(np.radians(slope), line.times)).max()
@@ -116,29 +122,16 @@ def run(quick: bool) -> Findings:
         for slope, line in found.items()
     }
     checks = (
-        MeasuredValue(
-            'last sinking speed of a level line',
-            float(level.velocities[-1, 1]),
-            'm/s',
-            within_share(1e-4, of=float(across_level)),
-            law + 'w = ½ ρ C_n d U².',
-            key='level',
-        ),
-        MeasuredValue(
-            'last speed across a line that slopes by 30°',
-            float(sloping.velocities[-1, 1]),
-            'm/s',
-            within_share(1e-4, of=float(across)),
-            law + 'w cos φ = ½ ρ C_n d U².',
-            key='sloping_across',
-        ),
-        MeasuredValue(
-            'last speed along a line that slopes by 30°',
-            float(sloping.velocities[-1, 0]),
-            'm/s',
-            within_share(1e-4, of=float(along)),
-            law + 'w sin φ = ½ ρ C_t π d U².',
-            key='sloping_along',
+        *(
+            MeasuredValue(
+                f'last {what}',
+                float(line.velocities[-1, part]),
+                'm/s',
+                within_share(1e-4, of=float(wanted)),
+                f'Expected: the speed at which drag carries the weight, {law}.',
+                key=key,
+            )
+            for key, what, line, part, wanted, law in last
         ),
         MeasuredValue(
             'largest difference of velocity between two nodes at the end',
@@ -191,8 +184,7 @@ def run(quick: bool) -> Findings:
 
 
 def _drawn(found: dict[float, Sinking]) -> Figure:
-    figure = Figure(figsize=(6.4, 4.2), layout='constrained')
-    axes = figure.add_subplot()
+    figure, (axes,) = panes(6.4, 4.2)
     fine = np.linspace(0.0, DURATION_S, 400)
     for slope, line in found.items():
         exact = fall(np.radians(slope), fine)
@@ -205,7 +197,6 @@ def _drawn(found: dict[float, Sinking]) -> Figure:
             )
     axes.plot([], [], 'ko', ms=4, label='model')
     axes.set(xlabel='time [s]', ylabel='speed [m/s]', xlim=(0.0, DURATION_S))
-    axes.grid(alpha=0.3)
     axes.legend()
     return figure
 

@@ -9,23 +9,14 @@ from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.lab.reference_codes.lone_line import SEA, WIRE, holding, loaded, lone_line, settled
+from trawl_ros.lab.reference_codes.own_wire import own_model, own_steady
+from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, UNITS, WIRE, WireSteadyState
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.refinement import order, refinement_figure
-from trawl_ros.model.assembly import block_forces
 from trawl_ros.report.pictures import Drawing
-
-LENGTH, SPEED = 600.0, 2.0
-
-LUMP_MASS, LUMP_VOLUME, LUMP_DRAG_AREA = 2000.0, 0.25, 12.0
-"""kg, m³, C_D A in m²."""
-
-KNOWN = {'depth': 335.307, 'lag': 498.191, 'tension': 41_042.0}
-"""Independently integrated results of the same wire: m, m, N, to these digits."""
-
-UNITS = {'depth': 'm', 'lag': 'm', 'tension': 'N'}
 
 SEGMENTS = (5, 10, 20, 40, 80)
 CLAIMED = 20
@@ -33,22 +24,13 @@ CLAIMED = 20
 
 
 @dataclass(frozen=True)
-class Wire:
-    """Steady state of a towed wire.
+class Wire(WireSteadyState):
+    """Steady state with its shape.
 
-    Attributes
-    ----------
-    depth, lag
-        Depth of the lower end, and its distance behind the block, m.
-    tension
-        At the upper end, N.
-    places : (n, 2) array
-        Points at equal distances along the wire, from the block on: ahead and up, m.
+    ``places`` (n, 2) are points at equal distances along the wire, from the block on: ahead and
+    up, m.
     """
 
-    depth: float
-    lag: float
-    tension: float
     places: FloatArray
 
 
@@ -59,10 +41,9 @@ def integrated(points: int) -> Wire:
     tension: d(T t)/dσ = -(weight + drag), dr/dσ = (1 + T / EA) t. At σ = 0 the tension holds the
     lump's weight and drag, so that the integration needs no shooting.
     """
-    diameter = WIRE['diameter_m']
-    across = 0.5 * SEA.density * WIRE['normal_drag'] * diameter
-    along = 0.5 * SEA.density * WIRE['tangential_drag'] * np.pi * diameter
-    flow = np.array([-SPEED, 0.0])
+    across = 0.5 * WIRE.density * WIRE.normal_drag * WIRE.diameter
+    along = 0.5 * WIRE.density * WIRE.tangential_drag * np.pi * WIRE.diameter
+    flow = np.array([-WIRE.speed, 0.0])
 
     def slope(_: float, y: FloatArray) -> FloatArray:
         tension = np.hypot(y[0], y[1])
@@ -70,15 +51,15 @@ def integrated(points: int) -> Wire:
         slide = flow @ t
         cross = flow - slide * t
         load = across * np.hypot(*cross) * cross + along * abs(slide) * slide * t
-        load[1] -= WIRE['weight_in_water_n_m']
-        return np.concatenate([-load, (1.0 + tension / WIRE['stiffness_n']) * t])
+        load[1] -= WIRE.weight_in_water
+        return np.concatenate([-load, (1.0 + tension / WIRE.stiffness) * t])
 
-    heavy = (LUMP_MASS - SEA.density * LUMP_VOLUME) * SEA.gravity
-    resistance = 0.5 * SEA.density * LUMP_DRAG_AREA * SPEED**2
-    at = np.linspace(0.0, LENGTH, points + 1)
+    heavy = (WIRE.lump_mass - WIRE.density * WIRE.lump_volume) * WIRE.gravity
+    resistance = 0.5 * WIRE.density * WIRE.lump_drag_area * WIRE.speed**2
+    at = np.linspace(0.0, WIRE.length, points + 1)
     found = solve_ivp(
         slope,
-        (0.0, LENGTH),
+        (0.0, WIRE.length),
         np.array([resistance, heavy, 0.0, 0.0]),
         method='DOP853',
         t_eval=at,
@@ -97,18 +78,9 @@ def integrated(points: int) -> Wire:
 
 def modelled(segments: int) -> Wire:
     """Return the steady wire of the gear model."""
-    model = lone_line(WIRE, segments, SEA)
-    model = loaded(model, LUMP_MASS, LUMP_VOLUME, LUMP_DRAG_AREA)
-    tow = holding(LENGTH, np.zeros(3), np.zeros(3), SPEED)
-    share = np.arange(1, segments + 1)[:, None] / segments
-    state = settled(model, share * LENGTH / np.sqrt(2.0) * np.array([-1.0, 0.0, -1.0]), tow)
+    state, found = own_steady(WIRE, own_model(WIRE, segments))
     places = np.concatenate([np.zeros((1, 2)), state.nodes[:, [0, 2]]])
-    return Wire(
-        depth=-float(state.nodes[-1, 2]),
-        lag=-float(state.nodes[-1, 0]),
-        tension=float(np.linalg.norm(block_forces(model, state, tow)[0])),
-        places=places,
-    )
+    return Wire(**vars(found), places=places)
 
 
 def run(quick: bool) -> Findings:
@@ -133,14 +105,14 @@ def run(quick: bool) -> Findings:
             f'{key} by the equation integrated here',
             getattr(reference, key),
             unit,
-            within_share(2e-6, of=KNOWN[key]),
+            within_share(2e-6, of=getattr(INTEGRATED, key)),
             'Expected: an integration of the same wire made before this model, to its digits.',
             key=f'integrated_{key}',
         )
         for key, unit in UNITS.items()
     ]
     shape = [
-        float(np.linalg.norm(wires[n].places - exact[n].places, axis=1).max()) / LENGTH
+        float(np.linalg.norm(wires[n].places - exact[n].places, axis=1).max()) / WIRE.length
         for n in counts
     ]
     errors = {
@@ -186,13 +158,11 @@ def run(quick: bool) -> Findings:
 
 
 def _shape(claimed: Wire) -> Figure:
-    figure = Figure(figsize=(6.4, 4.2), layout='constrained')
-    axes = figure.add_subplot()
+    figure, (axes,) = panes(6.4, 4.2)
     fine = integrated(200)
     axes.plot(*fine.places.T, '-', label='integrated')
     axes.plot(*claimed.places.T, 'o', ms=4, label=f'model, {CLAIMED} segments')
     axes.set(xlabel='ahead of the block [m]', ylabel='above the surface [m]', aspect='equal')
-    axes.grid(alpha=0.3)
     axes.legend()
     return figure
 

@@ -3,31 +3,38 @@
 """Mesh convergence of the default gear: warp, bridles, net, and all of them refined."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
-from trawl_ros.lab.validation.convergence.gears import (
-    AROUND_ZERO,
-    REFERENCE,
-    SPEED,
-    RefinementRow,
-    differences,
-    row,
-)
 from trawl_ros.lab.validation.convergence.time_step import BOWING_PRESSURE_PA
-from trawl_ros.model.gear_model import build_model
+from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.report.pictures import Drawing
-from trawl_ros.solver.equilibrium import find_equilibrium
+from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
+
+SPEED = 2.1
+"""Speed through the water, m/s."""
+
+STRIDE = 1.15
+"""Largest ratio of warp lengths between a state and its start."""
+
+AROUND_ZERO = ('pitch', 'slip')
+"""Angles that can be near zero: pitch changes sign with growing warp length."""
+
+REFERENCE = np.radians(30.0)
+"""Reference for differences of these angles: 30°, the upper end of Fig. 5 of the paper."""
 
 ALLOWED_CHANGE_PERCENT = 2.0
 """Largest difference from the finer gear, %."""
@@ -67,18 +74,62 @@ DRAWN = (
 TICKS = -50, -20, -10, -5, -2, -1, 0, 1, 2, 5, 10, 20, 50
 
 
+@dataclass(frozen=True)
+class RefinementRow:
+    """Observables (lengths, observables) of one gear; NaN for lengths without a steady state."""
+
+    name: str
+    nodes: int
+    seen: FloatArray
+
+
+def row(name: str, gear: GearRecord, lengths: tuple[float, ...]) -> RefinementRow:
+    """Solve one gear at all warp lengths, from the middle one outward."""
+    model = build_model(gear)
+    seen = np.full((len(lengths), len(OBSERVABLES)), np.nan)
+    middle = len(lengths) // 2
+    first = _solved(model, lengths[middle], None)
+    for k in sorted(range(len(lengths)), key=lambda k: abs(k - middle)):
+        found = first
+        # A fine net follows small changes of length more surely than it settles anew.
+        count = int(np.ceil(abs(np.log(lengths[k] / lengths[middle])) / np.log(STRIDE)))
+        for length in np.geomspace(lengths[middle], lengths[k], count + 1)[1:]:
+            found = _solved(model, float(length), found) if found is not None else None
+        found = found or _solved(model, lengths[k], None)
+        if found is not None:
+            seen[k] = found.observables.array()
+    return RefinementRow(name, model.nodes, seen)
+
+
+def _solved(model: GearModel, length: float, start: Equilibrium | None) -> Equilibrium | None:
+    try:
+        return find_equilibrium(model, OperatingPoint(length, length, SPEED), start)
+    except NoSteadyState:
+        return None
+
+
+def differences(seen: FloatArray, fine: FloatArray) -> FloatArray:
+    """Differences from the finer gear, as shares of its value.
+
+    Angles around zero are compared with `REFERENCE` instead. The last axis of each array runs over
+    the observables.
+    """
+    around = np.array([name.endswith(AROUND_ZERO) for name in OBSERVABLES])
+    return (seen - fine) / np.where(around, REFERENCE, np.abs(fine))
+
+
 def run(quick: bool) -> Findings:
     """Solve all gears and compare."""
     lengths = (500.0,) if quick else (200.0, 500.0, 900.0)
     gear = load_gear('kaifuha')
     if quick:
-        gear = around_of(gear, 12)
+        gear = gear.with_around(12)
     default = row('default', gear, lengths)
     finer = [row(name, gear.refined(**factors), lengths) for name, factors in FINER.items()]
     own = gear.netting.around
     more = gear.refined(**FINER['net']).netting.around
     counts = [] if quick else [count for count in SERIES if count not in (own, more)]
-    series = {count: row(str(count), around_of(gear, count), lengths) for count in counts}
+    series = {count: row(str(count), gear.with_around(count), lengths) for count in counts}
     series[own] = default
     series[more] = next(one for one in finer if one.name == 'net')
     bowed_rows, bowed_table = bowed_nets(gear, (own, more) if quick else BOWED_MESHES_AROUND)
@@ -103,12 +154,6 @@ def run(quick: bool) -> Findings:
             f'against {np.degrees(REFERENCE):.0f}°.'
         ),
     )
-
-
-def around_of(gear: GearRecord, around: int) -> GearRecord:
-    """Return the gear with another number of numerical meshes around the net."""
-    netting = gear.netting.model_copy(update={'around': around})
-    return gear.model_copy(update={'netting': netting})
 
 
 def _checks(
@@ -191,8 +236,7 @@ def _value(name: str, value: float) -> str:
 
 def _figure(series: Mapping[int, RefinementRow], lengths: Sequence[float], own: int) -> Figure:
     counts = sorted(series)
-    figure = Figure(figsize=(4.2 * len(lengths) + 1.5, 4.6), layout='constrained')
-    panels = figure.subplots(1, len(lengths), sharey=True, squeeze=False)[0]
+    figure, panels = panes(4.2 * len(lengths) + 1.5, 4.6, 1, len(lengths), sharey=True)
     for k, (axes, length) in enumerate(zip(panels, lengths, strict=True)):
         shares = 100.0 * differences(
             np.array([series[count].seen[k] for count in counts]), series[counts[-1]].seen[k]
@@ -206,9 +250,7 @@ def _figure(series: Mapping[int, RefinementRow], lengths: Sequence[float], own: 
         axes.set_yscale('symlog', linthresh=ALLOWED_CHANGE_PERCENT)
         axes.set_yticks(TICKS, [f'{tick:g}' for tick in TICKS])
         axes.minorticks_off()
-        axes.set_xlabel('numerical meshes around the net')
-        axes.set_title(f'{length:g} m of warp')
-        axes.grid(alpha=0.3)
+        axes.set(xlabel='numerical meshes around the net', title=f'{length:g} m of warp')
     panels[0].set_ylabel('difference from the finest net (%)')
     figure.legend(*panels[0].get_legend_handles_labels(), loc='outside right center', frameon=False)
     return figure

@@ -13,6 +13,7 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.model.assembly import bar_tensions
 from trawl_ros.model.gear_model import GearModel, build_model
@@ -207,8 +208,7 @@ def run(quick: bool) -> Findings:
     size = SMALL if quick else FULL
     gear = load_gear('kaifuha')
     if quick:
-        coarse = gear.netting.model_copy(update={'around': 12})
-        gear = gear.model_copy(update={'netting': coarse})
+        gear = gear.with_around(12)
     bowed = gear.netting.model_copy(update={'bowing_pressure_pa': BOWING_PRESSURE_PA})
     taut = _smooth(build_model(gear.model_copy(update={'netting': bowed})), size)
     model = build_model(gear)
@@ -354,8 +354,7 @@ def _table(taut: Convergence, smooth: Convergence, ramp: Convergence) -> TextTab
 
 
 def _figure(smooth: Convergence, ramp: Convergence) -> Figure:
-    figure = Figure(figsize=(10.0, 4.6), layout='constrained')
-    left, right = figure.subplots(1, 2, sharey=True)
+    figure, (left, right) = panes(10.0, 4.6, 1, 2, sharey=True)
     _draw(left, smooth, 'smooth hauling')
     _draw(right, ramp, 'winch ramp')
     left.set_ylabel('largest error, share of the change (%)')
@@ -372,9 +371,7 @@ def _draw(axes: Axes, found: Convergence, title: str) -> None:
     axes.loglog(found.steps, 100 * slope, 'k--', linewidth=1.0, label='second order')
     axes.set_xticks(found.steps, [f'{step:g}' for step in found.steps])
     axes.minorticks_off()
-    axes.set_xlabel('time step (s)')
-    axes.set_title(title)
-    axes.grid(alpha=0.3)
+    axes.set(xlabel='time step (s)', title=title)
 
 
 CASE = ValidationCase('time_step', 'The time stepper is of second order', run)

@@ -14,6 +14,7 @@ from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.netting import NettingRecord, SectionRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most, between
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.panels.published import (
     KnotRecord,
@@ -303,9 +304,9 @@ def _not_used(published: PublishedPanels, points: Sequence[PanelPoint]) -> TextT
 def _figure(points: Sequence[PanelPoint], net: NettingRecord) -> Figure:
     panels = [p.panel for p in points if p.panel.area != 'across']
     solidities = sorted({panel.solidity for panel in panels})
-    figure = Figure(figsize=(10.0, 4.4), layout='constrained')
+    figure, every = panes(10.0, 4.4, 1, 2)
     angles = np.linspace(0.0, 90.0, 46)
-    for n, (axes, kind) in enumerate(zip(figure.subplots(1, 2), KINDS, strict=True)):
+    for n, (axes, kind) in enumerate(zip(every, KINDS, strict=True)):
         for k, solidity in enumerate(solidities):
             netting = netting_of(solidity, 2.4e-3, knotless=True, square=True)
             loads = [panel_loads(netting, net, DIAMOND, radians(a), 0.75)[n] for a in angles]
@@ -317,7 +318,6 @@ def _figure(points: Sequence[PanelPoint], net: NettingRecord) -> Figure:
                 filled = colour if one.panel.use == 'counts' else 'none'
                 axes.plot(one.angle, one.published / scale, 'o', color=colour, mfc=filled, ms=4)
         axes.set(xlabel='angle to the flow / °', ylabel=f'coefficient of {kind}')
-        axes.grid(alpha=0.3)
         axes.legend(fontsize='small')
     return figure
 

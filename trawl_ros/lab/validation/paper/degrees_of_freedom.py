@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.lab.report.measured import MeasuredValue, within
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.paper.comparison import Comparison, column, compare_trial
 from trawl_ros.lab.validation.paper.trial import warp_length
@@ -66,11 +67,11 @@ def run(quick: bool) -> Findings:
 
 
 def _lines(seen: Comparison) -> Figure:
-    figure = Figure(figsize=(10.0, 7.5), layout='constrained')
+    figure, every = panes(10.0, 7.5, 2, 2)
     lengths = np.array([warp_length(window) for window in seen.windows])
     others = [row for row in range(len(lengths)) if row not in seen.on_line]
     rows = list(seen.on_line)
-    for axes, (name, channel, label, scale) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
+    for axes, (name, channel, label, scale) in zip(every, PANELS, strict=True):
         one = column(channel)
         axes.plot(seen.lengths, scale * seen.six[:, one], color='C0', label='6-DOF')
         axes.plot(seen.lengths, scale * seen.three[:, one], color='C3', label='3-DOF')
@@ -81,9 +82,7 @@ def _lines(seen: Comparison) -> Figure:
             label='synthetic trial, other speeds',
         )  # fmt: skip
         axes.set_title(name, fontsize='medium')
-        axes.set_xlabel('warp length [m]')
-        axes.set_ylabel(label)
-        axes.grid(alpha=0.3)
+        axes.set(xlabel='warp length [m]', ylabel=label)
         if channel.endswith('depth'):
             axes.invert_yaxis()
         axes.legend(fontsize='small')
@@ -91,8 +90,8 @@ def _lines(seen: Comparison) -> Figure:
 
 
 def _states(seen: Comparison) -> Figure:
-    figure = Figure(figsize=(10.0, 7.5), layout='constrained')
-    for axes, (name, channel, label, scale) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
+    figure, every = panes(10.0, 7.5, 2, 2)
+    for axes, (name, channel, label, scale) in zip(every, PANELS, strict=True):
         one = column(channel)
         trial = scale * seen.trial[:, one]
         span = np.array([trial.min(), trial.max()])
@@ -104,9 +103,7 @@ def _states(seen: Comparison) -> Figure:
             error = seen.error(values, channel)
             axes.plot(trial, scale * values[:, one], style, label=f'{kind}, error {error:.1f} %')
         axes.set_title(name, fontsize='medium')
-        axes.set_xlabel(f'measured {label}')
-        axes.set_ylabel(f'predicted {label}')
-        axes.grid(alpha=0.3)
+        axes.set(xlabel=f'measured {label}', ylabel=f'predicted {label}')
         axes.legend(fontsize='small')
     return figure
 

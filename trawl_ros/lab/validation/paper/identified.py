@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from trawl_ros.lab.report.measured import MeasuredValue, within
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.paper.refit import PaperRefit, refit_trial
 from trawl_ros.lab.validation.paper.trial import trial_windows
@@ -59,21 +60,17 @@ def run(quick: bool) -> Findings:
 
 
 def _objective(fit: PaperRefit) -> Figure:
-    figure = Figure(figsize=(7.5, 4.5), layout='constrained')
-    axes = figure.subplots()
+    figure, (axes,) = panes(7.5, 4.5)
     axes.plot(np.arange(len(fit.objective)), fit.objective, 'C0-o', ms=4, label='objective')
     axes.axhline(fit.objective[0] / 3.0, color='0.5', ls='--', label='a third of the first')
     axes.set_ylim(bottom=0.0)
-    axes.set_xlabel('iteration [-]')
-    axes.set_ylabel('objective of eq. 35 [-]')
-    axes.grid(alpha=0.3)
+    axes.set(xlabel='iteration [-]', ylabel='objective of eq. 35 [-]')
     axes.legend()
     return figure
 
 
 def _lines(fit: PaperRefit) -> Figure:
-    figure = Figure(figsize=(7.5, 5.0), layout='constrained')
-    axes = figure.subplots()
+    figure, (axes,) = panes(7.5, 5.0)
     degrees = np.degrees(ATTACK)
     axes.axvspan(*np.degrees(fit.attack), color='0.92', lw=0)
     for slope, colour, name in (('a2', 'C0', 'lift $C_l$'), ('a1', 'C3', 'drag $C_d$')):
@@ -89,9 +86,7 @@ def _lines(fit: PaperRefit) -> Figure:
             degrees, fit.line(fit.prior.start, slope, ATTACK), '--', color=colour, lw=0.9,
             label=f'{name}, start',
         )  # fmt: skip
-    axes.set_xlabel('attack angle α [°]')
-    axes.set_ylabel('coefficient [-]')
-    axes.grid(alpha=0.3)
+    axes.set(xlabel='attack angle α [°]', ylabel='coefficient [-]')
     axes.legend(fontsize='small')
     return figure
 

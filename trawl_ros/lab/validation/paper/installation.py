@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from trawl_ros.lab.report.measured import MeasuredValue, within
 from trawl_ros.lab.report.page import Findings, TextTable
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.paper.sweeps import (
     FEW_TURNS,
@@ -77,15 +78,13 @@ def _monotone(
 
 
 def _figure(found: Mapping[str, Mapping[float, Sighting]]) -> Figure:
-    figure = Figure(figsize=(11.0, 6.5), layout='constrained')
-    for axes, (name, label, read) in zip(figure.subplots(2, 3).flat, PANELS, strict=True):
+    figure, every = panes(11.0, 6.5, 2, 3)
+    for axes, (name, label, read) in zip(every, PANELS, strict=True):
         for (angle, row), style in zip(found.items(), ('C0-o', 'C2:s', 'C3--^'), strict=True):
             values = [read(one.seen) for one in row.values()]
             axes.plot(list(row), values, style, ms=4, label=SYMBOLS[angle])
         axes.set_title(name, fontsize='medium')
-        axes.set_xlabel('turn against the rigging [°]')
-        axes.set_ylabel(label)
-        axes.grid(alpha=0.3)
+        axes.set(xlabel='turn against the rigging [°]', ylabel=label)
         axes.legend(fontsize='small')
     return figure
 

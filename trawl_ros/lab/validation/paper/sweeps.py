@@ -82,10 +82,7 @@ def gear(quick: bool) -> GearRecord:
     record = load_gear('kaifuha')
     if not quick:
         return record
-    netting = record.netting.model_copy(
-        update={'around': record.netting.around // COARSENING_FACTOR}
-    )
-    return record.model_copy(update={'netting': netting})
+    return record.with_around(record.netting.around // COARSENING_FACTOR)
 
 
 def paper_model(quick: bool) -> GearModel:

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.report.measured import MeasuredValue, at_least
 from trawl_ros.lab.report.page import Findings
+from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.paper.sweeps import (
     FEW_LENGTHS,
@@ -63,8 +64,7 @@ def run(quick: bool) -> Findings:
 
 
 def _figure(lengths: FloatArray, angles: dict[str, FloatArray]) -> Figure:
-    figure = Figure(figsize=(7.5, 4.5), layout='constrained')
-    axes = figure.subplots()
+    figure, (axes,) = panes(7.5, 4.5)
     for name, style, label in (
         ('attack', 'b--o', 'attack angle α'),
         ('slip', 'k:s', 'slip angle β'),
@@ -72,9 +72,7 @@ def _figure(lengths: FloatArray, angles: dict[str, FloatArray]) -> Figure:
     ):
         axes.plot(lengths, angles[name], style, ms=4, label=label)
     axes.axhline(0.0, color='0.6', lw=0.8)
-    axes.set_xlabel('warp length [m]')
-    axes.set_ylabel('angle [°]')
-    axes.grid(alpha=0.3)
+    axes.set(xlabel='warp length [m]', ylabel='angle [°]')
     axes.legend()
     return figure
 

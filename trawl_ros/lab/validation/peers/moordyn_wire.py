@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Towed wire compared with MoorDyn: steady, and through hauling and a turn."""
 
-from collections.abc import Mapping
 from contextlib import closing
 
 import numpy as np
@@ -18,7 +17,7 @@ from trawl_ros.lab.reference_codes.manoeuvre import (
 )
 from trawl_ros.lab.reference_codes.moordyn_wire import SETTLING_S, MoorDynWire
 from trawl_ros.lab.reference_codes.own_wire import own_history, own_model, own_steady
-from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE, WireSteadyState
+from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, UNITS, WIRE, WireSteadyState
 from trawl_ros.lab.report.measured import MeasuredValue, at_most, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
@@ -34,8 +33,6 @@ OWN_STEP = 0.25
 
 SCHEME, STEP = 'RK4', 0.005
 """MoorDyn's scheme and its step (s); RK2 in steps of 2 ms changes its histories by 4e-5 at most."""
-
-UNITS: Mapping[str, str] = {'depth': 'm', 'lag': 'm', 'tension': 'N'}
 
 OURS, PEER = 'trawl_ros', 'MoorDyn'
 

@@ -4,7 +4,7 @@
 
 from trawl_ros.lab.reference_codes.moorpy_wire import MoorPyWire
 from trawl_ros.lab.reference_codes.own_wire import own_model, own_steady
-from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, WIRE
+from trawl_ros.lab.reference_codes.towed_wire import INTEGRATED, UNITS, WIRE
 from trawl_ros.lab.report.measured import MeasuredValue, within_share
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
@@ -19,7 +19,6 @@ def run(quick: bool) -> Findings:
     """Solve the same steady tow in both programs; ``quick`` makes no difference."""
     _, ours = own_steady(WIRE, own_model(WIRE, SEGMENTS))
     theirs = MoorPyWire(WIRE).solve()
-    names = (('depth', 'm'), ('lag', 'm'), ('tension', 'N'))
     table = TextTable(
         'The steady tow, and what the integrated equation of the wire gives',
         ('', 'trawl_ros', 'MoorPy', 'integrated', 'trawl_ros error', 'MoorPy error'),
@@ -32,7 +31,7 @@ def run(quick: bool) -> Findings:
                     for of in (ours, theirs)
                 ),
             )
-            for name, unit in names
+            for name, unit in UNITS.items()
         ),
     )
     return Findings(
@@ -45,7 +44,7 @@ def run(quick: bool) -> Findings:
                 "Expected is MoorPy's.",
                 key=f'steady_{name}',
             )
-            for name, unit in names
+            for name, unit in UNITS.items()
         ),
         tables=(table,),
         text=(

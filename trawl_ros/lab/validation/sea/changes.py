@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Changes of quantities not measured at sea, and their effect on hauls that the model misses."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,14 +78,14 @@ CHANGES = (
 
 
 def changed_hauls(
-    gear: GearRecord, haul: HaulRecord, changes: Sequence[Change] = CHANGES
+    gear: GearRecord, haul: HaulRecord
 ) -> list[tuple[Observables | None, Mapping[str, float]]]:
-    """Observables and derived quantities of a haul with each change of the gear.
+    """Observables and derived quantities of a haul with each of `CHANGES` of the gear.
 
     A change without a steady state gives None and an empty mapping.
     """
     found: list[tuple[Observables | None, Mapping[str, float]]] = []
-    for change in changes:
+    for change in CHANGES:
         model = build_model(change.gear(haul.rigged(gear)))
         try:
             steady = steady_state(model, haul.warp_m, change.speed * haul.speed)

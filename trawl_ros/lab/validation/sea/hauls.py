@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.lab.report.measured import MeasuredValue, at_least, at_most
 from trawl_ros.lab.report.page import Findings, TextTable
 from trawl_ros.lab.validation.cases import ValidationCase
@@ -120,7 +121,7 @@ def run(quick: bool) -> Findings:
     counting = [trend for trend in trends if trend.counts]
     right = [is_right(trend, by_name) for trend in counting]
     points = counted(hauls)
-    errors = np.array([abs(one.error(point)) for one, point in points])
+    errors = _sizes(points)
     rows = [
         MeasuredValue(
             'points that count',
@@ -139,14 +140,7 @@ def run(quick: bool) -> Findings:
             'Each from a published plan, but for four_seam, whose net is assumed.',
             key='gears',
         ),
-        MeasuredValue(
-            'median error of the points that count',
-            float(np.median(errors)),
-            '%',
-            at_most(MEDIAN_PERCENT),
-            _worst(points),
-            key='median_error',
-        ),
+        _median('the points that count', 'median_error', errors, _worst(points)),
         MeasuredValue(
             f'points that count within {NEAR_PERCENT:g} %',
             100.0 * float(np.mean(errors <= NEAR_PERCENT)),
@@ -173,33 +167,22 @@ def run(quick: bool) -> Findings:
             key='found',
         ),
     ]
-    planned = [abs(one.error(point)) for one, point in points if one.gear.plan == 'published']
-    rows.append(
-        MeasuredValue(
-            'median error of the gears whose net plan is published',
-            float(np.median(planned)) if planned else math.nan,
-            '%',
-            at_most(MEDIAN_PERCENT),
-            f'{len(planned)} points, {sum(error <= NEAR_PERCENT for error in planned)} of them '
-            f'within {NEAR_PERCENT:g} %.',
-            key='median_error_of_published_plans',
-        )
+    planned = _sizes([pair for pair in points if pair[0].gear.plan == 'published'])
+    note = (
+        f'{len(planned)} points, {(planned <= NEAR_PERCENT).sum()} of them within '
+        f'{NEAR_PERCENT:g} %.'
     )
+    what, key = 'the gears whose net plan is published', 'median_error_of_published_plans'
+    rows.append(_median(what, key, planned, note))
     rows += _beside_reference(points, published.reference)
     for gear in gears:
-        own = [abs(one.error(point)) for one, point in points if one.gear is gear]
-        if own:
-            rows.append(
-                MeasuredValue(
-                    f'median error of {gear.gear}',
-                    float(np.median(own)),
-                    '%',
-                    at_most(MEDIAN_PERCENT),
-                    f'{len(own)} points, net plan {gear.plan}. Tuned: {gear.tuned.strip()}. '
-                    f'Assumed: {gear.assumed.strip()}',
-                    key=f'median_error_of_{gear.gear}',
-                )
+        own = _sizes([pair for pair in points if pair[0].gear is gear])
+        if len(own):
+            note = (
+                f'{len(own)} points, net plan {gear.plan}. Tuned: {gear.tuned.strip()}. '
+                f'Assumed: {gear.assumed.strip()}'
             )
+            rows.append(_median(gear.gear, f'median_error_of_{gear.gear}', own, note))
     return Findings(
         rows=tuple(rows),
         tables=(
@@ -241,6 +224,18 @@ def run(quick: bool) -> Findings:
     )
 
 
+def _sizes(points: Sequence[tuple[ModelledHaul, PointRecord]]) -> FloatArray:
+    """Return the sizes (n,) of the errors of points, %."""
+    return np.array([abs(one.error(point)) for one, point in points])
+
+
+def _median(what: str, key: str, errors: FloatArray, note: str) -> MeasuredValue:
+    median = float(np.median(errors)) if len(errors) else math.nan
+    return MeasuredValue(
+        f'median error of {what}', median, '%', at_most(MEDIAN_PERCENT), note, key=key
+    )
+
+
 def _beside_reference(
     points: Sequence[tuple[ModelledHaul, PointRecord]], reference: ReferenceRecord
 ) -> list[MeasuredValue]:
@@ -253,11 +248,11 @@ def _beside_reference(
     for key, what, quantities, limit in groups:
         chosen = [(one, p) for one, p in points if p.quantity in quantities]
         if chosen:
-            errors = [abs(one.error(point)) for one, point in chosen]
+            errors = _sizes(chosen)
             rows.append(
                 MeasuredValue(
                     f'largest error of {what}, of the points that count',
-                    max(errors),
+                    float(errors.max()),
                     '%',
                     at_most(limit),
                     f'{len(chosen)} points, median {np.median(errors):.1f} %. {_worst(chosen)}',

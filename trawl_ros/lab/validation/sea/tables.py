@@ -94,17 +94,8 @@ def trends_table(trends: Sequence[TrendRecord], hauls: Modelled) -> TextTable:
         for trend in trends
         if trend.counts
     )
-    head = (
-        'gear',
-        'what',
-        'by',
-        'hauls',
-        'sea',
-        'model, first',
-        'model, second',
-        'right',
-        'source',
-    )
+    model = ('model, first', 'model, second')
+    head = ('gear', 'what', 'by', 'hauls', 'sea', *model, 'right', 'source')
     return TextTable('Signs of trends, and bounds on them, that sources print.', head, rows)
 
 

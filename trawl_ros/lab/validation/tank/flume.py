@@ -305,8 +305,7 @@ def run(quick: bool) -> Findings:
         return Findings((), tables=(TextTable('Not run', ('why',), ((why,),)),), text=why)
     gear, states = load_gear(GEAR), read_states(TABLE)
     if quick:
-        netting = gear.netting.model_copy(update={'around': 24})
-        gear = gear.model_copy(update={'netting': netting})
+        gear = gear.with_around(24)
         states = [state for state in states if state.trial in SERIES][:SMALL]
     every = compared(gear, states)
     doubts = [] if quick else doubted(gear, states)

@@ -61,7 +61,7 @@ def about_z(angle: float) -> FloatArray:
 
 def rotation_matrix(quaternion: FloatArray) -> FloatArray:
     """Return the matrix (3, 3) of a unit quaternion (x, y, z, w)."""
-    x, y, z, w = quaternion / np.linalg.norm(quaternion)
+    x, y, z, w = np.asarray(quaternion, dtype=float) / np.linalg.norm(quaternion)
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
