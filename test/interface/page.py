@@ -13,7 +13,7 @@ from trawl_ros.nodes.runtime.datum import datum_specs
 from trawl_ros.nodes.runtime.frames import frame_specs
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import FIXED, Flag, Names, Number, Spec
-from trawl_ros.nodes.runtime.qos import LATCHED, STREAM
+from trawl_ros.nodes.runtime.qos import LARGE_TYPES, LARGE_WAIT_S, offered
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.frames import (
     DOOR_MOUNTS,
@@ -150,7 +150,7 @@ def specs(node: str) -> tuple[Spec, ...]:
 
 
 def qos(topic: Topic) -> str:
-    profile = LATCHED if topic.latched else STREAM
+    profile = offered(topic)
     durability = profile.durability.name.lower().replace('_', '-')
     return f'{profile.reliability.name.lower()}, {durability}, depth {profile.depth}'
 
@@ -280,7 +280,8 @@ def page() -> str:
             'x of its frame.',
             frames_table(),
             '## Quality of service',
-            f'Publishers offer {qos(CLOCK)}; latched topics {qos(STATIC_TRANSFORMS)}. '
+            f'Publishers offer {qos(CLOCK)}; latched topics {qos(STATIC_TRANSFORMS)}; '
+            f'of {" and ".join(LARGE_TYPES)} they keep {LARGE_WAIT_S:g} s. '
             '`qos_overrides` change history, depth and reliability of each. Subscribers take best '
             'effort too.',
             '## Topics',

@@ -90,6 +90,19 @@ def test_who_commands_again_is_obeyed_and_topics_are_watched_apart(graph, tow):
     assert simulation.statuses()[0].level == OK
 
 
+def test_winches_that_are_commanded_in_a_scenario_stop_too(graph, scenario_path):
+    simulation = graph.add(
+        SimNode, scenario=str(scenario_path), winches='command', time_scale=5.0,
+        command_timeout_s=TIMEOUT_S,
+    )  # fmt: skip
+    graph.command_winches(350.0, 300.0)
+    graph.until(lambda: simulation._watches['command/winch'].lapsed, 60.0)
+    run(graph, simulation, 6.0)
+    port, _ = simulation._tow.simulation.now.winches
+    assert port.speed == 0.0
+    assert 300.5 < port.length < 305.0
+
+
 def test_without_the_parameter_a_command_holds(graph, tow):
     simulation, commander = tow()
     commander.send(*vessel_command(0, 2.1, RATE))
@@ -182,7 +195,7 @@ def test_winches_that_stop_do_not_creep_though_their_counters_err(gear):
     for _ in range(60):
         tow.step()
     length = tow.simulation.now.winches[0].length
-    tow.stop_winches()
+    tow.command_winches(*tow.simulation.stop_lengths())
     for _ in range(60):
         tow.step()
     port, starboard = tow.simulation.now.winches

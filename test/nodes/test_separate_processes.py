@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 from collections import Counter
+from importlib import import_module
 from types import SimpleNamespace
 
 import pytest
@@ -47,19 +48,24 @@ class Monitor(TrawlNode):
         return counts
 
 
+def words_of(parameters):
+    """Parameters as words of a command line."""
+    words = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
+    return ['--ros-args', *words] if words else []
+
+
 @pytest.fixture
 def start():
     """Start a node as a process; all that still run are ended afterwards."""
     started = []
 
     def start_node(name, **parameters):
-        options = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
         code = (
             f"import sys; sys.argv[0] = '{name}'; from trawl_ros.nodes.{name} import main; "
             'sys.exit(main())'
         )
         process = subprocess.Popen(
-            [sys.executable, '-c', code, *(['--ros-args', *options] if options else [])],
+            [sys.executable, '-c', code, *words_of(parameters)],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -133,15 +139,13 @@ def test_a_tow_is_recorded_whole_and_every_process_ends_cleanly(tow):
         ('sim_node', {'time_scale': -2}, '0 to 1000 (factor)'),
     ],
 )
-def test_what_cannot_be_ends_with_one_sentence(start, tmp_path, node, parameters, sentence):
+def test_what_cannot_be_ends_with_one_sentence(capfd, tmp_path, node, parameters, sentence):
     full = tmp_path / 'full'
     full.mkdir()
     (full / 'mine.txt').write_text('kept')
-    given = {key: str(value).format(full=full) for key, value in parameters.items()}
-    process = start(node, **given)
-    output, _ = process.communicate(timeout=30.0)
-    assert process.returncode == 1, output
-    (line,) = output.strip().splitlines()
+    words = words_of({key: str(value).format(full=full) for key, value in parameters.items()})
+    assert import_module(f'trawl_ros.nodes.{node}').main([node, *words]) == 1
+    (line,) = capfd.readouterr().err.strip().splitlines()
     assert line.startswith(f'{node}: ')
     assert sentence in line
     assert [file.name for file in full.iterdir()] == ['mine.txt']

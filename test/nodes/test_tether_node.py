@@ -9,6 +9,8 @@ from geometry_msgs.msg import WrenchStamped  # noqa: E402
 from nav_msgs.msg import Odometry  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 
+from trawl_ros.core.time import SECOND  # noqa: E402
+from trawl_ros.messages.commands import winch_command  # noqa: E402
 from trawl_ros.messages.diagnostics import ERROR  # noqa: E402
 from trawl_ros.nodes.tether_node import TetherNode  # noqa: E402
 
@@ -95,6 +97,25 @@ def test_winches_obey(graph, tether):
     graph.until(lambda: tether._tether.wanted == (302.0, 300.0))
     towing(graph, vehicle, 90)
     assert tether._tether.lengths == pytest.approx((302.0, 300.0), abs=0.05)
+
+
+def test_winches_stop_when_nobody_commands_them_and_old_commands_are_refused(graph, gear_path):
+    vehicle = graph.add(Vehicle)
+    tether = graph.add(
+        TetherNode, gear=str(gear_path), warp_length_m=300.0,
+        command_timeout_s=2.0, max_command_age_s=1.0,
+    )  # fmt: skip
+    towing(graph, vehicle, 1)
+    graph.send(*winch_command(50 * SECOND, 320.0, 320.0))
+    graph.until(lambda: 'max_command_age_s' in graph.status('tether_node: messages').message)
+    graph.send(*winch_command(0, 320.0, 320.0))
+    graph.until(lambda: tether._tether.wanted == (320.0, 320.0))
+    towing(graph, vehicle, 90)
+    stopped = tether._tether.lengths
+    assert stopped[0] == stopped[1] == pytest.approx(301.2, abs=0.8)
+    graph.until(lambda: 'silent for 2 s' in graph.status('tether_node: tether').message)
+    towing(graph, vehicle, 10)
+    assert tether._tether.lengths == stopped
 
 
 def test_a_speed_without_a_steady_state_is_said_and_another_one_helps(graph, tether):

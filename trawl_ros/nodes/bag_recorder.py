@@ -190,7 +190,7 @@ class BagRecorder(TrawlNode):
         for name, topic in project.items():
             if name in self._choice:
                 # Of latched topics, too, all that comes is wanted, and not the last alone.
-                profile = recorder_profile(topic.type)
+                profile = recorder_profile(topic.type, topic.rate)
                 self._record(name, topic.type, with_history(profile) if topic.latched else profile)
         self.every(FLUSH_S, self._look_after)
 

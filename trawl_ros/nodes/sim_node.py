@@ -382,12 +382,11 @@ class SimNode(TrawlNode):
 
     def _watch_commands(self) -> None:
         tow, timeout = self._tow, self.parameters['command_timeout_s']
-        if not isinstance(tow, CommandedTow):
-            return
-        if self._watches[VESSEL_COMMAND].lapses(tow.time_s, timeout):
+        turning = self._watches[VESSEL_COMMAND].lapses(tow.time_s, timeout)
+        if turning and isinstance(tow, CommandedTow):
             tow.stop_turning()
         if self._watches[WINCH_COMMAND].lapses(tow.time_s, timeout):
-            tow.stop_winches()
+            tow.command_winches(*tow.simulation.stop_lengths())
 
     def _reset(self) -> str:
         self._tow.reset()

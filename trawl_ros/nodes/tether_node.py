@@ -21,6 +21,7 @@ from trawl_ros.messages.fields import beyond
 from trawl_ros.messages.markers import gear_markers
 from trawl_ros.messages.stamps import header, stamp_of
 from trawl_ros.model.gear_model import build_model
+from trawl_ros.nodes.command_watch import MAX_AGE, CommandWatch
 from trawl_ros.nodes.runtime.node import TrawlNode
 from trawl_ros.nodes.runtime.parameters import Number, Text
 from trawl_ros.nodes.runtime.qos import CONSUMER, STREAM
@@ -56,6 +57,9 @@ class TetherNode(TrawlNode):
                'Least time between two steps of the gear; odometry between them is left out.'),
         Number('gear_rate_hz', 1.0, 'Hz', 0.0, 10.0, 'Rate of the markers on tether/gear.',
                live=True),
+        Number('command_timeout_s', 0.0, 's', 0.0, 3600.0, 'Time of the odometry without a '
+               'command/winch after which the winches stop; 0 is never.', live=True),
+        MAX_AGE,
     )  # fmt: skip
 
     def __init__(self, **kwargs: Any) -> None:
@@ -66,6 +70,7 @@ class TetherNode(TrawlNode):
         self._drawn = -math.inf
         self._refused_at = math.nan
         self._problem = ''
+        self._watch = CommandWatch(WINCH_COMMAND)
         self.advertise(WRENCH)
         self.advertise(GEAR)
         for topic in FORCES.values():
@@ -81,6 +86,9 @@ class TetherNode(TrawlNode):
             return [Status('tether', WARN, self.with_namespace(f'waits for {ODOMETRY}'))]
         port, starboard = self._tether.lengths
         values = {'port warp': f'{port:.1f}', 'starboard warp': f'{starboard:.1f}'}
+        if self._watch.lapsed:
+            silence = f'{WINCH_COMMAND} silent for {self.parameters["command_timeout_s"]:g} s'
+            return [Status('tether', WARN, f'{silence}: the winches stop', values)]
         return [Status('tether', OK, 'towing', values)]
 
     def _command(self, message: Any) -> None:
@@ -89,6 +97,8 @@ class TetherNode(TrawlNode):
             raise MessageError(f'{WINCH_COMMAND}: {objection}')
         if self._tether is None:
             raise MessageError(f'{WINCH_COMMAND}: nothing is towed yet; expected {ODOMETRY} before')
+        most_s = self.parameters['max_command_age_s']
+        self._watch.take(stamp_of(message), self._reached, self._reached / SECOND, most_s)
         old = self._tether.wanted
         port, starboard = (before if new is None else new for before, new in zip(old, wanted))
         self._tether.wanted = port, starboard
@@ -103,6 +113,9 @@ class TetherNode(TrawlNode):
         else:
             self._go_on(vehicle, span_s)
         self._reached = stamp
+        timeout_s = self.parameters['command_timeout_s']
+        if self._tether is not None and self._watch.lapses(stamp / SECOND, timeout_s):
+            self._tether.stop_winches()
         self.real_time_factor.reached(stamp)
         if self._tether is not None:
             self._publish(self._tether, stamp, message)
@@ -114,6 +127,7 @@ class TetherNode(TrawlNode):
         length = self.parameters['warp_length_m']
         point = (self.parameters['tow_point_x_m'], 0.0, self.parameters['tow_point_z_m'])
         self._tether, self._drawn = None, -math.inf
+        self._watch = CommandWatch(WINCH_COMMAND)
         try:
             self._tether = Tether(self._model, vehicle, (length, length), tow_point=point)
         except NoSteadyState as reason:

@@ -45,6 +45,9 @@ class TowSetup(Protocol):
     def step(self) -> Truth | None:
         """Advance by one period of the truth; the start itself at first, None after the end."""
 
+    def command_winches(self, port: float | None, starboard: float | None) -> None:
+        """Command warp lengths (m); None leaves that winch as it is."""
+
     def reset(self) -> None:
         """Return to the start."""
 
@@ -117,10 +120,6 @@ class CommandedTow:
     def command_vessel(self, speed: float, turn_rate: float) -> None:
         """Command a speed through the water (m/s) and a rate of turn (rad/s, to port)."""
         self.simulation.command = replace(self.simulation.command, speed=speed, turn_rate=turn_rate)
-
-    def stop_winches(self) -> None:
-        """Stop the winches where they are."""
-        self.command_winches(*self.simulation.stop_lengths())
 
     def stop_turning(self) -> None:
         """Steer straight on at the last commanded speed."""

@@ -76,6 +76,10 @@ class Winch:
     length: float
     speed: float
 
+    def stop_length(self, limits: WinchRecord) -> float:
+        """Return the length at which it stops soonest, m."""
+        return self.length + self.speed * abs(self.speed) / (2.0 * limits.max_acceleration_m_s2)
+
     def advanced(
         self, limits: WinchRecord, length: float, dt: float, most_speed: float = math.inf
     ) -> 'Winch':

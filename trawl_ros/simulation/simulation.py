@@ -205,10 +205,8 @@ class Simulation:
 
     def stop_lengths(self) -> tuple[float, float]:
         """Return the warp lengths (m, by the counters) where winches stop soonest, port first."""
-        most = self.model.gear.winch.max_acceleration_m_s2
-        stops = np.array(
-            [w.length + w.speed * abs(w.speed) / (2.0 * most) for w in self.now.winches]
-        )
+        limits = self.model.gear.winch
+        stops = np.array([winch.stop_length(limits) for winch in self.now.winches])
         shown = stops
         for _ in range(COUNTER_ITERATIONS):
             port, starboard = map(float, shown)

@@ -114,6 +114,12 @@ class Tether:
             self._step(tow, span_s / steps, HALVINGS)
         self._vehicle = vehicle
 
+    def stop_winches(self) -> None:
+        """Stop the winches where they are."""
+        limits = self.model.gear.winch
+        port, starboard = self._winches
+        self.wanted = port.stop_length(limits), starboard.stop_length(limits)
+
     def _towed_by(self, vehicle: VehicleMotion) -> Tow:
         arms = self._arms @ vehicle.rotation.T
         port, starboard = self._winches
