@@ -1,5 +1,6 @@
 """The layers hold, are noticed where they do not, and are those of docs/design.md."""
 
+import ast
 import os
 import runpy
 import shutil
@@ -50,6 +51,11 @@ def test_the_imports_keep_the_contracts() -> None:
         ('solver/trim.py', 'import trawl_ros.lab.validation.cases', 'Rooms import only'),
         ('nodes/sim_node.py', 'import trawl_ros.cli.main', 'Rooms import only'),
         ('estimation/windows/finder.py', 'import trawl_ros.estimation.fit.fit', 'Estimation goes'),
+        (
+            'diagnosis/repair.py',
+            'import trawl_ros.estimation.least_squares.descent',
+            'Only a fit steps',
+        ),
         ('effects/base/effect.py', 'import trawl_ros.effects.registry', 'No cycle'),
         ('solver/trim.py', 'import rclpy', 'know rclpy'),
         ('diagnosis/repair.py', 'import click', 'know click'),
@@ -62,6 +68,44 @@ def test_an_import_upward_is_noticed(tree: Path, module: str, line: str, broken:
     assert done.returncode == 1
     (said,) = (row for row in done.stdout.splitlines() if broken in row and 'BROKEN' in row)
     assert said
+
+
+SOLVERS = {'curve_fit', 'least_squares', 'leastsq', 'lsq_linear', 'nnls'}
+"""Functions of scipy.optimize that step in least squares."""
+
+STEPS = {
+    'estimation/least_squares/linear_problem.py',
+    # Gear is trimmed to what is measured of it: no fit of readings.
+    'solver/trimming/measured.py', 'solver/trimming/released.py', 'solver/trimming/traded.py',
+}  # fmt: skip
+"""Modules that may use them."""
+
+
+def _steps(path: Path) -> bool:
+    """Tell whether a module imports a least-squares step of SciPy, or names one as an attribute."""
+    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+        if isinstance(node, ast.ImportFrom) and node.module == 'scipy.optimize':
+            if SOLVERS & {alias.name for alias in node.names}:
+                return True
+        elif isinstance(node, ast.Attribute) and node.attr in SOLVERS:
+            return True
+    return False
+
+
+def test_one_module_holds_the_least_squares_step() -> None:
+    package = ROOT / 'trawl_ros'
+    found = {str(path.relative_to(package)) for path in package.rglob('*.py') if _steps(path)}
+    assert found == STEPS
+
+
+def test_another_step_is_noticed(tmp_path: Path) -> None:
+    for line in (
+        'from scipy.optimize import lsq_linear',
+        'import scipy.optimize\nscipy.optimize.least_squares(f, x)',
+    ):
+        path = tmp_path / 'module.py'
+        path.write_text(line, encoding='utf-8')
+        assert _steps(path)
 
 
 def test_the_drawn_imports_between_folders_have_no_cycle() -> None:

@@ -29,7 +29,7 @@ STAGES = (
     ('bags/reader.py', 'messages'),
     ('estimation/windows/finder.py', 'feed'),
     ('diagnosis/procedure.py', 'diagnose_windows'),
-    ('estimation/fit/line_search.py', 'line_search'),
+    ('estimation/fit/window_search.py', 'linearised'),
     ('diagnosis/inference/screen.py', 'screen'),
     ('diagnosis/report/writing.py', 'write_diagnosis'),
 )

@@ -15,7 +15,9 @@ from trawl_ros.estimation.fit.error_terms import Scheme
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.gear.boards import BoardLawRecord, BoardRecord, PolarPointRecord, TiltPointRecord
 from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.polars import polar_of
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import CHANNELS, INPUTS
@@ -237,6 +239,40 @@ def sea() -> SimpleNamespace:
         pressure_to_depth=pressure_to_depth,
         depth_to_pressure=depth_to_pressure,
     )
+
+
+def straight_with_heel(board: BoardRecord) -> BoardRecord:
+    """A board on straight lines, as eq. 14, whose lift falls as it heels; alike at 16°."""
+    polar = polar_of(board)
+    assert polar is not None
+    angles = np.radians([12.0, 20.0])
+    lines = [
+        np.polyfit(angles, np.interp(angles, polar.attack, own), 1)
+        for own in (polar.lift, polar.drag)
+    ]
+    points = tuple(
+        PolarPointRecord(
+            attack_deg=angle,
+            lift=float(np.polyval(lines[0], np.radians(angle))),
+            drag=max(float(np.polyval(lines[1], np.radians(angle))), 0.0),
+        )
+        for angle in (0.0, 10.0, 20.0, 30.0, 40.0)
+    )
+    heel = tuple(
+        TiltPointRecord(tilt_deg=tilt, lift_factor=factor, upward=upward)
+        for tilt, factor, upward in ((-20.0, 0.85, -0.5), (0.0, 1.0, 0.0), (20.0, 0.85, 0.5))
+    )
+    law = BoardLawRecord(kind='table', points=points, heel=heel)
+    return board.model_copy(update={'law': law})
+
+
+@pytest.fixture(params=['stall', 'heel'])
+def lawful(request: pytest.FixtureRequest) -> GearRecord:
+    """A coarse gear whose boards follow a polar with stall, or straight lines with heel."""
+    gear = load_gear('krill_800').refined(net=0.4)
+    if request.param == 'stall':
+        return gear
+    return gear.model_copy(update={'board': straight_with_heel(gear.board)})
 
 
 TOW_STATES = ((450.0, 2.1, 0.3), (300.0, 2.1, 0.3), (300.0, 2.3, 1.9))

@@ -47,8 +47,9 @@ def why_windows_alone(gear: GearRecord, *, prior: bool) -> str | None:
 
 
 def towed_gear(gear: GearRecord, *, net: bool) -> TowedGear:
-    """Gear that is towed, with the effects that its file switches on; ``net`` is true if drag and
-    weight of the net are estimated along.
+    """Gear that is towed, with the effects that its file switches on.
+
+    ``net`` is true if drag and weight of the net are estimated too.
     """
     return TowedGear(build_model(gear), effects_of(gear), net_std=NET_STD if net else 0.0)
 

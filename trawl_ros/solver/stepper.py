@@ -211,12 +211,15 @@ class Stepper:
         solved = self._solved(motion, tow, h)
         return solved.step.motion(solved.acceleration)
 
-    def _solved(self, motion: Motion, tow: Tow, h: float) -> SolvedStep:
+    def _solved(
+        self, motion: Motion, tow: Tow, h: float, guess: FloatArray | None = None
+    ) -> SolvedStep:
+        """Solve a step, from a guess of its acceleration (dof,) where there is one."""
         if self._factor_step != h:
             self._factor = None
         keep_rate, kept = self._keep_rate(h), self._factor is not None
         try:
-            return self._solve(motion, tow, h, keep_rate)
+            return self._solve(motion, tow, h, keep_rate, guess)
         except StepFailed:
             if keep_rate == 0.0 and not kept:
                 # Already refactorised in every iteration; a retry cannot succeed.
@@ -233,21 +236,21 @@ class Stepper:
         """Return True if a correction of a size, after one of the last size, is small enough."""
         return size < enough
 
-    def _solve(self, motion: Motion, tow: Tow, h: float, keep_rate: float) -> SolvedStep:
+    def _solve(
+        self, motion: Motion, tow: Tow, h: float, keep_rate: float, guess: FloatArray | None = None
+    ) -> SolvedStep:
         model, options, step = self.model, self.options, Step(motion, h, self.scheme)
         by_velocity, by_position = self.scheme.by_velocity(h), self.scheme.by_position(h)
-        new = motion.averaged.copy()
-        inertia = None
+        new = motion.averaged.copy() if guess is None else guess
+        # Added mass turns with the ropes. Taken at the predicted place once a step, it
+        # keeps the second order of the method and leaves M out of the Jacobian.
+        inertia = mass(model, step.state(motion.averaged), tow)
         last, patch, enough = np.inf, NO_PATCH, options.tolerance * h**3
         # In full Newton, corrections may grow before they shrink.
         full_newton = keep_rate == 0.0
         most = options.full_newton_iterations if full_newton else options.iterations
         for iteration in range(most):
             state = step.state(new)
-            if inertia is None:
-                # Added mass turns with the ropes. Taken at the predicted place once a step, it
-                # keeps the second order of the method and leaves M out of the Jacobian.
-                inertia = mass(model, state, tow)
             if self._factor is None:
                 here = linearised(model, state, tow)
                 force = here.force

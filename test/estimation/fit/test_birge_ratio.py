@@ -9,8 +9,8 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimator import AS_LIKELY, Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import Fit
-from trawl_ros.estimation.fit.line_search import NO_STEADY_STATE
 from trawl_ros.estimation.fit.linearised import linearise
+from trawl_ros.estimation.fit.window_search import NO_STEADY_STATE
 
 LONG = 700.0
 LOW, HIGH = 0.8, 2.0

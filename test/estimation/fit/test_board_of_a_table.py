@@ -1,4 +1,4 @@
-"""A board that follows a table is refitted by corrections to it, as one of eq. 14 is."""
+"""A board of another law is refitted by corrections to it, as one of eq. 14 is."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.from_gear import board_prior, estimator_options
 from trawl_ros.estimation.windows.records import SteadyWindow
-from trawl_ros.gear.load import load_gear
+from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -20,9 +20,8 @@ HIDDEN = {'c1': 0.04, 'c2': 0.12}
 """Corrections of the boards at sea: more drag and more lift than the table says."""
 
 
-def test_hidden_corrections_are_found_within_their_intervals() -> None:
-    gear = load_gear('krill_800').refined(net=0.4)
-    model, prior = build_model(gear), board_prior(gear)
+def test_hidden_corrections_are_found_within_their_intervals(lawful: GearRecord) -> None:
+    model, prior = build_model(lawful), board_prior(lawful)
     truth = np.array([HIDDEN.get(name, 0.0) for name in COEFFICIENTS])
     plant, near = model.with_coefficients(truth), None
     estimator = Estimator(Predictor(model), prior, OBSERVABLES, estimator_options())

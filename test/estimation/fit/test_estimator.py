@@ -12,9 +12,9 @@ from trawl_ros.estimation.fit.error_terms import Scheme
 from trawl_ros.estimation.fit.estimate import posterior_of, undetermined
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
-from trawl_ros.estimation.fit.line_search import NO_STEADY_STATE
 from trawl_ros.estimation.fit.linearised import linearise
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.fit.window_search import NO_STEADY_STATE
 from trawl_ros.records.channels import CHANNELS, INPUTS
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -176,7 +176,7 @@ def test_two_open_directions_are_named_apart(sea, prior):
     rows = np.random.default_rng(1).normal(size=(40, 12)) * 30.0
     rows[:, 5] = 0.0
     rows[:, 11] = -rows[:, 10]
-    names = {frozenset(c.names) for c in undetermined(posterior_of(rows, prior.std, 1.0))}
+    names = {frozenset(c.names) for c in undetermined(posterior_of(rows.T @ rows, prior.std, 1.0))}
     assert names == {frozenset({'c3'}), frozenset({'a6', 'c6'})}
 
 

@@ -1,4 +1,4 @@
-"""A board that follows a table is refitted from the steady parts of a tow by corrections to it."""
+"""A board of another law is refitted from the steady parts of a tow by corrections to it."""
 
 from dataclasses import replace
 
@@ -12,7 +12,6 @@ from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, TowInputs
 from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
-from trawl_ros.gear.load import load_gear
 from trawl_ros.lab.benchmark.motion import NOISE
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.records.channels import MEASURED
@@ -39,9 +38,8 @@ def steady_states():
     )  # fmt: skip
 
 
-def test_hidden_corrections_are_found_within_their_intervals():
-    record = load_gear('krill_800').refined(net=0.4)
-    gear, prior = TowedGear(build_model(record)), board_prior(record)
+def test_hidden_corrections_are_found_within_their_intervals(lawful):
+    gear, prior = TowedGear(build_model(lawful)), board_prior(lawful)
     truth = np.array([HIDDEN.get(name, 0.0) for name in COEFFICIENTS])
     point = TowedPoint(truth, 0.0, np.zeros(len(INPUT_ERRORS)), np.zeros(0))
     tow = steady_states().only_steady()

@@ -130,13 +130,16 @@ def test_an_error_of_an_input_at_a_knot_does_what_its_derivative_says(
     np.testing.assert_allclose(told, real, atol=0.02 * np.abs(real).max())
 
 
-def test_an_error_of_the_log_is_forgotten_when_another_takes_its_column(towed):
+def test_an_error_of_the_log_is_left_in_slow_motions_when_another_takes_its_column(towed, coarse):
     knots, _ = towed.tow.inputs.knots
     # It began to act a spacing before its knot.
     last = knots.columns - 1
-    assert towed.by_knots[last - 1, :, 0].any()
-    assert not towed.by_knots[last:, :, 0].any()
     assert towed.by_knots[last, :, knots.columns].any()
+    drifts = np.zeros(towed.tow.inputs.number_of_knots)
+    drifts[0] = 0.05
+    real, told = (change[last:] for change in changed(towed, coarse, drifts=drifts))
+    assert np.abs(real).max() > 0.1
+    np.testing.assert_allclose(told, real, atol=0.5 * np.abs(real).max())
 
 
 def test_a_tow_that_grows_is_linearised_as_if_it_had_been_there_from_the_beginning(towed, coarse):
@@ -281,6 +284,19 @@ def test_derivatives_of_steady_parts_are_those_of_their_means(coarse, error):
     there = linear.towed
     assert np.abs(real[there]).max() > 0.1
     np.testing.assert_allclose(told[there], real[there], atol=0.03 * np.abs(real[there]).max())
+
+
+def test_a_motion_has_the_derivatives_of_the_mean_in_which_it_begins(coarse):
+    """Also by errors that it has outlasted: its slowest motions have not."""
+    knots = knots_of_log(np.arange(0.0, 640.0), 0.03, 640.0, 20.0, 60.0)
+    tow = replace(held_tow(), inputs=replace(held_tow().inputs, knots=(knots,)))
+    point = TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, np.zeros(knots.number))
+    linear = linearise_tow(TowedGear(coarse), tow, point)
+    drifts = np.zeros(knots.number)
+    drifts[8:18] = 0.005
+    real, told = (change[20:30] for change in changed(linear, coarse, drifts=drifts))
+    assert np.abs(real).max() > 0.1
+    np.testing.assert_allclose(told, real, atol=0.2 * np.abs(real).max())
 
 
 def test_stretches_in_which_derivatives_explode_are_left_out_and_told(coarse, monkeypatch):

@@ -7,9 +7,10 @@ import pytest
 
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.least_squares.descent import DescentOptions, descend
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.nuisances import layout_of
-from trawl_ros.estimation.motion.search import MotionSearch, without
+from trawl_ros.estimation.motion.search import FINDINGS, MotionSearch, without
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.lab.benchmark.motion import course_tow
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -57,10 +58,9 @@ def test_stretches_that_are_lost_late_stay_lost(coarse, gear):
         search = search_from(coarse, gear, b5=-3.0)
         search.tows = [replace(search.tows[0], means=towed.values)]
         search.begin()
-        sizes = search.find(search.options.sizes)
         assert list(search.linear[0].towed) == [True, False, False, False]
-        assert search.advance(sizes, 1, 4, regain=regain)
-        assert search.advance(sizes, 2, 4, regain=regain)
+        search.found = 0 if regain else FINDINGS
+        descend(search, DescentOptions(iterations=2, attempts=4, tolerance=0.0))
         kept[regain] = search.linear[0]
     assert kept[True].towed.all()
     assert list(kept[False].towed) == [True, False, False, False]

@@ -16,7 +16,7 @@ from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.fit.relinearise import with_those_of
+from trawl_ros.estimation.fit.window_search import with_those_of
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
@@ -24,7 +24,7 @@ from trawl_ros.solver.predict import Predictor
 OPTIONS = EstimatorOptions(
     second_start=False,
     iterations_final=14,
-    halvings=3,
+    attempts=4,
     relinearise_final=0.1,
     set_aside=0.1,
     tolerance=0.05,
@@ -39,7 +39,7 @@ nor the form of an effect better, so that what these are wrong by must not count
 POOR = 3.0
 """A misfit from where the boards are fitted again, another way."""
 
-REFITTING = replace(OPTIONS, iterations_final=8, halvings=2)
+REFITTING = replace(OPTIONS, iterations_final=8, attempts=3)
 """Options of a refit, which starts near to where it converges."""
 
 LIKE_THE_GEAR = 3.0

@@ -18,9 +18,9 @@ from trawl_ros.diagnosis.library.entries import Entry
 from trawl_ros.diagnosis.library.gear_file_change import GearFileChange
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.estimation.fit.fit import Fit
-from trawl_ros.estimation.fit.gauss_newton import gauss_newton_step
 from trawl_ros.estimation.fit.nuisance import reweighted
 from trawl_ros.estimation.fit.parameters import ParameterGroup, ParameterVector
+from trawl_ros.estimation.fit.window_search import most_likely
 from trawl_ros.solver.predict import Predictor
 
 USUAL_PATTERN, LARGEST_PATTERN = 3.0, 1e3
@@ -148,10 +148,8 @@ def screen(
     columns = signatures(ready, base.windows, wanted)
     shapes, of_shapes = patterns(base.windows)
     free = _with_patterns(base, shapes, of_shapes)
-    explained = gauss_newton_step(
-        replace(free, scales=base.scales), free.prior.low, free.prior.high
-    )
-    weights = reweighted(explained.elimination, base.options.huber)
+    explained = most_likely(replace(free, scales=base.scales), free.prior.low, free.prior.high)
+    weights = reweighted(replace(explained, weights=None).elimination, base.options.huber)
     # A larger factor is no noise, but a cause that goes with none of the covariates.
     scales = tuple(min(scale, LARGEST_NOISE) for scale in explained.scales)
     fit = replace(base, scales=scales)

@@ -13,8 +13,9 @@ from trawl_ros.estimation.fit.error_terms import TowErrors
 
 @dataclass(frozen=True)
 class ErrorStack:
-    """Errors of all t tows, those with fewer windows than n filled up with windows in which no
-    channel is present.
+    """Errors of all t tows of n windows at most.
+
+    Tows with fewer windows are filled up with windows in which no channel is present.
 
     Attributes
     ----------
@@ -26,8 +27,8 @@ class ErrorStack:
         Change of the readings by errors of a window's inputs and rest, G.
     shared : (t, n, k, k) array
         G Gᵀ.
-    columns : (t, n, k, p + m + q + 1) array
-        Of calibration, the model's errors and the coefficients, and residuals.
+    columns : (t, n, k, q + m + p + 1) array
+        Of the coefficients, the model's errors and calibration, and residuals.
     """
 
     present: FloatArray
@@ -45,8 +46,9 @@ class ErrorStack:
 def stacked(
     tows: Sequence[TowErrors], scales: FloatArray, residual: FloatArray, jacobian: FloatArray
 ) -> ErrorStack:
-    """Stack the errors of tows, with noise scales (k,), residuals (windows, k) and sensitivities
-    (windows, k, q) of all windows.
+    """Stack the errors of tows.
+
+    Given are noise scales (k,), residuals (windows, k) and sensitivities (windows, k, q).
     """
     n = max(len(tow.rows) for tow in tows)
     p, m, k = tows[0].calibration.shape[2], tows[0].model.shape[2], residual.shape[1]
@@ -54,15 +56,15 @@ def stacked(
     present = np.zeros((len(tows), n, k))
     std = np.ones(present.shape)
     inputs = np.zeros((*present.shape, tows[0].inputs.shape[2]))
-    columns = np.zeros((*present.shape, p + m + q + 1))
+    columns = np.zeros((*present.shape, q + m + p + 1))
     for place, tow in enumerate(tows):
         own = place, slice(len(tow.rows))
         present[own] = tow.present
         std[own] = np.where(tow.present, tow.noise * scales, 1.0)
         inputs[own] = tow.inputs
-        columns[own][..., :p] = tow.calibration
-        columns[own][..., p : p + m] = tow.model
-        columns[own][..., p + m : -1] = jacobian[tow.rows]
+        columns[own][..., :q] = jacobian[tow.rows]
+        columns[own][..., q : q + m] = tow.model
+        columns[own][..., q + m : -1] = tow.calibration
         columns[own][..., -1] = residual[tow.rows]
     shared = inputs @ inputs.swapaxes(2, 3)
     return ErrorStack(present, std, inputs, shared, columns)

@@ -10,11 +10,15 @@ from scipy.special import stdtrit
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.information import LEAST_PRECISION
 from trawl_ros.records.coefficients import COEFFICIENTS
 
 DETERMINED_FRACTION = 0.2
 DETERMINED_SHRINK = 0.5
 NAMED_SHARE = 0.4
+
+UNKNOWN = 1e-7
+"""Singular value, over the largest, up to which the data know nothing: rounding makes as much."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +84,7 @@ class NetFactor:
 
 @dataclass(frozen=True)
 class Posterior:
-    """Posterior of the coefficients from prior and data, by whitened rows.
+    """Posterior of the coefficients from prior and data.
 
     ``covariance`` (12, 12); ``singular`` and ``directions`` of the data's sensitivities scaled
     by the prior's std, in descending order; ``root`` (12, 12) times its transpose is the
@@ -96,7 +100,7 @@ class Posterior:
     def condition_number(self) -> float:
         """Condition number: largest over smallest singular value, infinite where one is zero."""
         smallest = self.singular[-1]
-        if smallest <= 1e-12 * self.singular[0]:
+        if smallest <= UNKNOWN * self.singular[0]:
             return float('inf')
         return float(self.singular[0] / smallest)
 
@@ -178,25 +182,22 @@ class Estimate:
         return float(np.sqrt(np.mean(np.square(list(self.noise_scales.values())))))
 
 
-def posterior_of(rows: FloatArray, prior_std: FloatArray, prior_weight: float) -> Posterior:
+def posterior_of(information: FloatArray, prior_std: FloatArray, prior_weight: float) -> Posterior:
     """Posterior covariance and singular directions.
 
     Parameters
     ----------
-    rows
-        Whitened sensitivities (m, 12), columns already scaled by ``prior_std``.
+    information
+        Of the data on the coefficients (12, 12), in units of ``prior_std``.
     prior_std
         Standard deviations (12,) of the prior.
     prior_weight
         1 for the prior as stated, 0 for none.
     """
-    n = len(prior_std)
-    padded = np.vstack((rows, np.zeros((max(0, n - len(rows)), n))))
-    triangle = np.linalg.qr(padded, mode='r')
-    _, singular, directions = np.linalg.svd(triangle)
+    squares, vectors = np.linalg.eigh(information)
+    singular, directions = np.sqrt(np.maximum(squares[::-1], 0.0)), vectors.T[::-1]
     # Where neither data nor prior say anything, the std is a million times the scale.
-    information = singular**2 + max(prior_weight, 1e-12)
-    root = directions.T / np.sqrt(information)
+    root = directions.T / np.sqrt(singular**2 + max(prior_weight, LEAST_PRECISION))
     return Posterior(
         covariance=(root @ root.T) * np.outer(prior_std, prior_std),
         singular=singular,
@@ -219,7 +220,8 @@ def undetermined(
         order = np.argsort(-np.abs(weights))
         among = [names[i] for i in order if abs(weights[i]) >= NAMED_SHARE]
         information = float(scaled[:, column] @ scaled[:, column])
-        std = information**-0.5 if information > 1e-24 else float('inf')
+        known = information > (UNKNOWN * knowledge.singular[0]) ** 2
+        std = information**-0.5 if known else float('inf')
         combinations.append(Combination(tuple(among or [names[order[0]]]), weights, std))
     return tuple(sorted(combinations, key=lambda combination: -combination.std))
 

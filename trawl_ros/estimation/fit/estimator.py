@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Robust bounded Gauss–Newton over steady windows, in square-root information form.
+"""Estimator of the coefficients from steady windows, robust and within bounds.
 
 For constant parameters this is an iterated Kalman filter: every window stays in memory with
 its linearisation, and is solved anew when the estimate has moved so far that first order
@@ -18,23 +18,17 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimate import Estimate, Innovation
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
-from trawl_ros.estimation.fit.line_search import NEGLIGIBLE_GAIN, Step, line_search
+from trawl_ros.estimation.fit.fitted_estimate import innovation_of, posterior_estimate
 from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.fit.posterior import innovation_of, posterior_estimate
 from trawl_ros.estimation.fit.prediction import SteadyPredictor
-from trawl_ros.estimation.fit.relinearise import far
+from trawl_ros.estimation.fit.window_search import NO_STEADY_STATE, WindowSearch
+from trawl_ros.estimation.least_squares.descent import DescentOptions, Rest, descend
 from trawl_ros.estimation.windows.records import SteadyWindow
 
 if TYPE_CHECKING:
     from trawl_ros.solver.equilibrium import Equilibrium
-
-SHORTER = 0.5
-"""The part of a step that is taken where full steps lead to and fro."""
-
-GETTING_ON = 0.5
-"""The part of the step before to which one must have come down where full steps do lead on."""
 
 POOR = 1.2
 """Misfit from where a fit may have come to rest in a wrong place. Chance does not get there with
@@ -130,12 +124,9 @@ class Estimator:
             return None
         innovation = self._innovation(linear)
         self._fit = replace(self._fit, windows=(*self._fit.windows, linear))
-        for _ in range(self.options.iterations_per_window):
-            step = self._step(self.options.relinearise)
-            if step.obstacle or step.needless:
-                break
-        reason = f'the last step was {step.size:.2g} std; the fit comes to rest at the end'
-        return self._publish(innovation, False, step.obstacle or reason)
+        rest, obstacle = self._descend(self.options.relinearise, self.options.iterations_per_window)
+        reason = f'the last step was {rest.size:.2g} std; the fit comes to rest at the end'
+        return self._publish(innovation, False, obstacle or reason)
 
     def finish(self) -> Estimate | None:
         """Iterate over all windows to convergence; None when no window can be used."""
@@ -158,8 +149,9 @@ class Estimator:
         return self._publish(None, converged, reason) if self._fit.windows else None
 
     def begin(self, linearised: Sequence[Linearised], coefficients: FloatArray) -> None:
-        """Take windows that were solved elsewhere; `finish` solves them anew where they are wanted
-        at these coefficients.
+        """Take windows that were solved elsewhere.
+
+        `finish` solves them again where they are wanted at these coefficients.
         """
         self._fit = replace(
             self._fit, windows=tuple(linearised), coefficients=np.array(coefficients)
@@ -183,8 +175,10 @@ class Estimator:
         net: FloatArray | None = None,
         inputs: FloatArray | None = None,
     ) -> FloatArray:
-        """Predict the four channels of eq. 35 at each window's inputs as measured, or ``inputs``
-        (n, 3), with factors ``net`` (2,) on the net's drag and weight, or those of the fit.
+        """Predict the four channels of eq. 35 in windows.
+
+        They are predicted at the inputs as measured, or ``inputs`` (n, 3), with factors ``net``
+        (2,) on the net's drag and weight, or those of the fit.
 
         Returns
         -------
@@ -273,7 +267,7 @@ class Estimator:
         for window in windows:
             linear, inputs = solved.get(window.index), self._inputs_of(window)
             threshold = self.options.relinearise_final
-            if linear is None or far(linear, self.coefficients, inputs, self._fit.net, threshold):
+            if linear is None or linear.is_far(self.coefficients, inputs, self._fit.net, threshold):
                 try:
                     linear = self._linearise(window, self.coefficients, inputs, near=linearised)
                 except NoSteadyState:
@@ -286,41 +280,33 @@ class Estimator:
         """Iterate to convergence; return its success and reason."""
         if not self._fit.windows:
             return False, 'no window has a steady state in the model'
-        limit = self.options.iterations_final
-        share, last = 1.0, np.inf
-        for iteration in range(1, limit + 1):
-            step = self._step(self.options.relinearise_final, share)
-            if step.needless:
-                return True, (
-                    f'after {iteration} iterations the step is below '
-                    f'{self.options.tolerance:g} of every std'
-                )
-            if step.obstacle:
-                if step.gain > NEGLIGIBLE_GAIN:
-                    return False, f'{step.obstacle}, {step.size:.2g} std from rest'
-                return True, f'after {iteration} iterations no step can lower the cost noticeably'
-            # The share of the errors changes with a step, and may change back with the next.
-            share = SHORTER if step.size > GETTING_ON * last else 1.0
-            last = step.size
-        return False, f'still moving by {step.size:.2g} std after {limit} iterations'
+        rest, _ = self._descend(self.options.relinearise_final, self.options.iterations_final)
+        return rest.converged, rest.reason
 
-    def _step(self, relinearise: float, share: float = 1.0) -> Step:
-        """Take a step that lowers the cost, if there is one."""
-        step = line_search(
-            self._fit, self.predictor, self.observables, relinearise, share, self._spares()
+    def _descend(self, relinearise: float, iterations: int) -> tuple[Rest, str]:
+        """Step towards the least cost; return the end, and what obstructs a further step."""
+        search = WindowSearch(
+            self._fit, self.predictor, self.observables, relinearise, self._note_step
         )
-        self._fit = step.fit
-        self._without += step.lost
-        if step.taken:
-            fit = step.fit
-            self.history.append(Progress(len(fit.windows), fit.cost, fit.objective))
-        return step
+        left = iterations
+        while True:
+            options = DescentOptions(left, self.options.attempts, self.options.tolerance)
+            rest = descend(search, options)
+            left -= rest.iterations
+            number = len(search.fit.windows) + len(self._without) + len(search.lost)
+            aside = int(self.options.set_aside * number) - len(self._without) - len(search.lost)
+            # Windows are left out only where no shorter step keeps them all.
+            if rest.converged or search.obstacle != NO_STEADY_STATE or min(left, aside) <= 0:
+                break
+            if search.spare:
+                break
+            search.spare = aside
+        self._fit = search.fit if rest.place is None else search.at(rest.place)
+        self._without += search.lost
+        return rest, search.obstacle
 
-    def _spares(self) -> tuple[int, ...]:
-        """Numbers of windows a step may set aside: none, or else as many as are left to be."""
-        number = len(self._fit.windows) + len(self._without)
-        left = int(self.options.set_aside * number) - len(self._without)
-        return (0, left) if left > 0 else (0,)
+    def _note_step(self, fit: Fit) -> None:
+        self.history.append(Progress(len(fit.windows), fit.cost, fit.objective))
 
     def _innovation(self, linear: Linearised) -> Innovation:
         known = np.diag(self.prior.std**2) if self.estimate is None else self.estimate.covariance
@@ -333,8 +319,9 @@ class Estimator:
 
 
 def _likelier(fit: Fit, other: Fit, margin: float) -> bool:
-    """True if a fit explains more windows than another, or as many with a log-likelihood that is
-    higher, or lower by no more than a margin.
+    """True if a fit explains more windows than another, or as many as well.
+
+    Its log-likelihood then is higher, or lower by no more than a margin.
     """
     return (-len(fit.windows), fit.negative_log_likelihood - margin) < (
         -len(other.windows),

@@ -38,9 +38,9 @@ class EstimatorOptions:
         Std of factors on drag and weight in water of the net, which are then estimated along; where
         both are 0 the net is held as the gear file has it.
     iterations_per_window, iterations_final
-        Gauss–Newton steps at most after each window and at the end.
-    halvings
-        Number of times that a failing step is halved before giving up.
+        Steps at most after each window and at the end.
+    attempts
+        Attempts at a step that lowers the cost, each shorter, before giving up.
     largest_step
         Largest change of a coefficient in one step, in prior std.
     relinearise, relinearise_final
@@ -70,7 +70,7 @@ class EstimatorOptions:
     net_weight: float = 0.0
     iterations_per_window: int = 1
     iterations_final: int = 40
-    halvings: int = 6
+    attempts: int = 7
     largest_step: float = 1.0
     relinearise: float = 2.0
     relinearise_final: float = 0.02

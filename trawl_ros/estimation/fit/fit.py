@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Fit of all windows at one set of coefficients: cost, square-root information, posterior."""
+"""Fit of all windows at one set of coefficients: cost, linear problem, posterior."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -20,10 +20,11 @@ from trawl_ros.estimation.fit.error_terms import (
 from trawl_ros.estimation.fit.estimate import Posterior, posterior_of
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import Linearised, measured_inputs
-from trawl_ros.estimation.fit.nuisance import NuisanceElimination, eliminate_nuisance, triangular
+from trawl_ros.estimation.fit.nuisance import NuisanceElimination, eliminate_nuisance
 from trawl_ros.estimation.fit.objective import objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import FARTHEST, ParameterVector
 from trawl_ros.estimation.fit.redundancy import clipped_variance, redundancy_numbers
+from trawl_ros.estimation.least_squares.linear_problem import LinearProblem
 
 AS_STATED = (1.0,) * len(GROUPS)
 """Factors on the stated noise before anything is known of it."""
@@ -109,7 +110,7 @@ class Fit:
 
     @cached_property
     def elimination(self) -> NuisanceElimination:
-        """Square-root information after elimination of all nuisance parameters."""
+        """Information after elimination of all nuisance parameters."""
         return self._eliminated(self.errors, self.jacobian)
 
     def _eliminated(
@@ -136,24 +137,35 @@ class Fit:
         away = self.prior.departure(self.coefficients)
         return float(0.5 * self.options.prior_weight * away @ away)
 
-    @cached_property
-    def system(self) -> tuple[FloatArray, FloatArray]:
-        """Square-root information, prior included: triangle (12, 12) and right side (12,).
+    def linear_problem(self, low: FloatArray, high: FloatArray) -> LinearProblem:
+        """Linear problem of all windows, in prior std, the coefficients within bounds (12,).
 
-        The step in prior std minimises ‖triangle · step − right side‖.
+        Its blocks are the tows: coefficients and the model's errors are shared, the errors of
+        calibration are their own.
         """
-        number = len(self.coefficients)
-        root = np.sqrt(self.options.prior_weight)
-        away = -self.prior.departure(self.coefficients)
-        left = np.vstack((self.elimination.triangle, root * np.eye(number)))
-        right = np.concatenate((self.elimination.right, root * away))
-        triangle = triangular(np.column_stack((left, right)))
-        return triangle[:number, :-1], triangle[:number, -1]
+        here, prior, found = self.prior.departure(self.coefficients), self.prior, self.elimination
+        q, free = len(here), np.full(len(found.model), np.inf)
+        blocks, places, precisions = [], [], []
+        for tow in found.tows:
+            rest = np.concatenate((found.model, tow.calibration))
+            blocks.append(tow.information.about(np.concatenate((here, np.zeros(len(rest))))))
+            places.append(np.concatenate((here, rest)))
+            of_prior = np.full(q, self.options.prior_weight)
+            precisions.append(np.concatenate((of_prior, np.ones(len(rest)))))
+        return LinearProblem(
+            blocks,
+            precisions,
+            places,
+            np.concatenate((prior.departure(low), -free)),
+            np.concatenate((prior.departure(high), free)),
+            q,
+        )
 
     @cached_property
     def posterior(self) -> Posterior:
         """Posterior covariance and singular directions."""
-        return posterior_of(self.elimination.triangle, self.prior.std, self.options.prior_weight)
+        known = self.elimination.coefficients.matrix
+        return posterior_of(known, self.prior.std, self.options.prior_weight)
 
     @property
     def std(self) -> FloatArray:

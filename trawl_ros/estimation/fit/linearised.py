@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Linearised:
-    """Linearisation at coefficients ``at`` (12,), ``inputs`` (3,) and ``net`` (2,), where it was
-    solved; the last are factors on drag and weight in water of the net.
+    """Linearisation of a window where it was solved.
 
+    It was solved at coefficients ``at`` (12,), ``inputs`` (3,) and ``net`` (2,); the last are
+    factors on drag and weight in water of the net.
     ``channels`` are the n measured channels the window has; ``measured``, ``values`` (n,),
     ``by_coefficients`` (n, 12, or more where more is estimated along), ``by_inputs`` (n, 3) and
     ``by_net`` (n, 2; 0 where the net is held) in SI; ``state`` starts the solver. The values are
@@ -65,6 +66,29 @@ class Linearised:
             at=np.concatenate((self.at, values)),
             by_coefficients=np.hstack((self.by_coefficients, columns)),
         )
+
+    def is_far(
+        self,
+        coefficients: FloatArray,
+        inputs: FloatArray,
+        net: FloatArray | None,
+        threshold: float,
+    ) -> bool:
+        """Return True if readings move by more than a threshold to first order.
+
+        Parameters
+        ----------
+        coefficients, inputs, net
+            Other point: (12,), warp lengths and speed (3,), factors on the net's drag and weight
+            (2,) or None where these are held.
+        threshold
+            Standard deviations of a window's mean.
+        """
+        change = self.by_coefficients @ (coefficients - self.at)
+        change += self.by_inputs @ (inputs - self.inputs)
+        if net is not None:
+            change += self.by_net @ (net - self.net)
+        return bool(np.max(np.abs(change) / self.std(1)) > threshold)
 
     def std(self, windows_in_state: int) -> FloatArray:
         """Standard deviations (n,) of the measured means."""

@@ -1,25 +1,24 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Nuisance elimination: square-root information of the coefficients alone.
+"""Tows of steady windows as blocks of one least-squares problem, whitened robustly.
 
-A reading's residual is r = ε + G δ + U ν + M μ + J Δ: the reading's own error ε of variance D,
-errors δ of the window's inputs and what it lacks of rest, calibration ν of the tow, the model's
-own error μ and the step Δ of the coefficients; δ, ν, μ are normal with unit variance. Windows
-are whitened by V = D/w + G Gᵀ, then each tow's ν and then μ are eliminated by QR, which leaves a
-triangle for Δ. A Huber loss acts, through the weights w, on each reading's own error
-D V⁻¹ (r - U ν - M μ) and not on a mixture, so that one bad sensor is weighed down and its
-neighbours are not.
+A reading's residual is r = J Δ + M μ + U ν + G δ + ε: the step Δ of the coefficients, the model's
+own error μ, calibration ν of the tow, errors δ of the window's inputs and what it lacks of rest,
+and the reading's own error ε of variance D; δ, ν, μ are normal with unit variance. Windows are
+whitened by V = D/w + G Gᵀ. All tows share Δ and μ. A Huber loss acts, through the weights w, on
+each reading's own error D V⁻¹ (r - U ν - M μ) and not on a mixture, so that one bad sensor is
+weighed down and its neighbours are not.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.error_stack import ErrorStack, stacked
 from trawl_ros.estimation.fit.error_terms import TowErrors
+from trawl_ros.estimation.least_squares.information import Information, Joined, joined, own_values
 
 ROUNDS = 50
 """Eliminations, the last with the weights that are kept: a guard, not a setting."""
@@ -39,14 +38,14 @@ class TowPart:
     ----------
     errors : TowErrors
         Of this tow.
+    information : Information
+        On coefficients, the model's errors and calibration, about Δ = 0.
     std : (n, k) array
         Of the reading's own error, noise scale included.
     weights : (n, k) array
         Huber weights, 1 for a reading within the limit.
     roots : (n, k, k) array
         Lower Cholesky factors of V.
-    triangle : (p, p + m + q) array
-        Of ν in terms of ν, μ and Δ, with q coefficients.
     own : (n, k) array
         The readings' own errors, in std.
     calibration : (p,) array
@@ -58,10 +57,10 @@ class TowPart:
     """
 
     errors: TowErrors
+    information: Information
     std: FloatArray
     weights: FloatArray
     roots: FloatArray
-    triangle: FloatArray
     own: FloatArray
     calibration: FloatArray
     inputs: FloatArray
@@ -76,22 +75,28 @@ class NuisanceElimination:
     ----------
     tows : tuple of TowPart
         In the order of their numbers.
-    triangle, right : (q, q) and (q,) arrays
-        Square-root information of Δ from the data alone.
-    model_triangle : (m, m + q) array
-        Of μ in terms of μ and Δ.
+    joined : Joined
+        Information on coefficients and the model's errors, about Δ = 0; none on the coefficients
+        before the data.
     model : (m,) array
         Most likely errors of the model at Δ = 0, in std.
-    cost : float
-        Robust cost at Δ = 0, without the prior of the coefficients.
     """
 
     tows: tuple[TowPart, ...]
-    triangle: FloatArray
-    right: FloatArray
-    model_triangle: FloatArray
+    joined: Joined
     model: FloatArray
-    cost: float
+
+    @property
+    def cost(self) -> float:
+        """Robust cost at Δ = 0, without the prior of the coefficients."""
+        return float(sum(tow.cost for tow in self.tows) + 0.5 * self.model @ self.model)
+
+    @property
+    def coefficients(self) -> Joined:
+        """Information (q, q) of the data on the coefficients alone."""
+        every, q = self.joined, len(self.joined.right) - len(self.model)
+        whole = Information(every.matrix, every.right, 0.0, 0.0)
+        return joined([whole], [every.precision], q)
 
 
 def eliminate_nuisance(
@@ -120,7 +125,8 @@ def eliminate_nuisance(
         Huber weights (n, k) of each tow that are taken as they are; found if None.
     """
     if not tows:
-        return _nothing(jacobian.shape[2])
+        none = np.zeros(jacobian.shape[2])
+        return NuisanceElimination((), Joined(np.diag(none), none, none, 0.0), np.zeros(0))
     stack = stacked(tows, scales, residual, jacobian)
     if weights is None:
         every = _robust_weights(stack, tows, huber)
@@ -131,19 +137,13 @@ def eliminate_nuisance(
     return _solved(stack, tows, every, huber)
 
 
-def _nothing(q: int) -> NuisanceElimination:
-    """Elimination of no errors, from no tows."""
-    none = np.zeros(0)
-    return NuisanceElimination((), np.zeros((q, q)), np.zeros(q), np.zeros((0, q)), none, 0.0)
-
-
 def _robust_weights(stack: ErrorStack, tows: Sequence[TowErrors], huber: float) -> FloatArray:
     """Huber weights (t, n, k) that belong to the readings' own errors with them."""
-    p, m = tows[0].calibration.shape[2], tows[0].model.shape[2]
-    known = np.concatenate((stack.columns[..., : p + m], stack.columns[..., -1:]), axis=-1)
+    m, p = tows[0].model.shape[2], tows[0].calibration.shape[2]
+    known = stack.columns[..., -(m + p + 1) :]
     weights, before = np.ones(stack.std.shape), None
     for _ in range(1, ROUNDS):
-        updated = _huber_weights(_own_errors(stack, known, p, weights), huber)
+        updated = _huber_weights(_own_errors(stack, known, m, weights), huber)
         step = updated - weights
         if float(np.max(np.abs(step))) < ALIKE:
             break
@@ -151,24 +151,25 @@ def _robust_weights(stack: ErrorStack, tows: Sequence[TowErrors], huber: float) 
     return weights
 
 
-def _own_errors(stack: ErrorStack, known: FloatArray, p: int, weights: FloatArray) -> FloatArray:
-    """The readings' own errors (t, n, k), in std, beside the most likely ν and μ.
+def _own_errors(stack: ErrorStack, known: FloatArray, m: int, weights: FloatArray) -> FloatArray:
+    """The readings' own errors (t, n, k), in std, with the most likely ν and μ.
 
-    From normal equations: for weights that are found to `ALIKE` they are exact enough, and the
-    coefficients take no part. ``known`` (t, n, k, p + m + 1) are U, M and r.
+    The coefficients take no part. ``known`` (t, n, k, m + p + 1) are M, U and r.
     """
     t, n, k, width = known.shape
-    m = width - p - 1
     variances = stack.shared + (stack.std**2 / weights)[..., None] * np.eye(k)
     solved = np.linalg.solve(variances, known)
     flat = known.reshape(t, n * k, width)
     normal = flat.swapaxes(1, 2) @ solved.reshape(t, n * k, width)
-    of_tow = np.linalg.solve(normal[:, :p, :p] + np.eye(p), normal[:, :p, p:])
-    rest = np.sum(normal[:, p:, p:] - normal[:, p:, :p] @ of_tow, axis=0)
-    model = np.linalg.solve(rest[:m, :m] + np.eye(m), rest[:m, m])
+    # Rows of calibration, and columns of the model's errors, behind them the residual.
+    across = np.concatenate((normal[:, m:-1, :m], normal[:, m:-1, -1:]), axis=2)
+    of_tow = np.linalg.solve(normal[:, m:-1, m:-1] + np.eye(width - 1 - m), across)
+    matrix = np.sum(normal[:, :m, :m] - normal[:, :m, m:-1] @ of_tow[..., :m], axis=0)
+    right = np.sum(normal[:, :m, -1] - (normal[:, :m, m:-1] @ of_tow[..., m:])[..., 0], axis=0)
+    model = np.linalg.solve(matrix + np.eye(m), right)
     without = np.ones((t, 1, width, 1))
-    without[:, 0, :p, 0] = of_tow[..., :m] @ model - of_tow[..., m]
-    without[:, 0, p:-1, 0] = -model
+    without[:, 0, :m, 0] = -model
+    without[:, 0, m:-1, 0] = of_tow[..., :m] @ model - of_tow[..., m]
     own: FloatArray = stack.std / weights * (solved @ without)[..., 0] * stack.present
     return own
 
@@ -176,8 +177,9 @@ def _own_errors(stack: ErrorStack, known: FloatArray, p: int, weights: FloatArra
 def _extrapolated(
     updated: FloatArray, step: FloatArray, before: FloatArray | None
 ) -> tuple[FloatArray, FloatArray | None]:
-    """Weights at the end of steps that fall by one factor (Aitken 1926), after two such; and the
-    step that the next is compared with.
+    """Weights at the end of steps that fall by one factor (Aitken 1926).
+
+    They are extrapolated after two such steps; given too is the step to compare the next with.
     """
     if before is None:
         return updated, step
@@ -203,77 +205,73 @@ def _solved(
 ) -> NuisanceElimination:
     """Elimination with Huber weights ``every`` (t, n, k)."""
     t, n, k, width = stack.columns.shape
-    p, m = tows[0].calibration.shape[2], tows[0].model.shape[2]
+    m, p = tows[0].model.shape[2], tows[0].calibration.shape[2]
     q = width - p - m - 1
     diagonal = (stack.std**2 / every)[..., None] * np.eye(k)
     roots = np.asarray(np.linalg.cholesky(diagonal + stack.shared), np.float64)
     inverse = np.asarray(np.linalg.inv(roots), np.float64)
     rows = (inverse @ stack.columns).reshape(t, n * k, width)
-    triangles = _eliminated(rows, p)
-    rest = triangles[:, p:, p:].reshape(-1, m + q + 1)
-    triangle = _eliminated(rest, m)
-    of_model, of_coefficients = triangle[:m], triangle[m:, m:]
-    padded = np.vstack((of_coefficients, np.zeros((q + 1, q + 1))))
-    last = triangular(padded)
-    model = solve_triangular(of_model[:, :m], of_model[:, -1])
-    tow_parts = _explained(stack, tows, roots, inverse, every, triangles[:, :p], model, huber)
+    squares = rows.swapaxes(1, 2) @ rows
+    determinants = 2.0 * np.log(np.diagonal(roots, axis1=2, axis2=3)).sum((1, 2))
+    blocks = [
+        Information(square[:-1, :-1], square[:-1, -1], float(square[-1, -1]), float(determinant))
+        for square, determinant in zip(squares, determinants, strict=True)
+    ]
+    precision = np.concatenate((np.zeros(q), np.ones(m + p)))
+    found = joined(blocks, [precision] * t, q + m)
+    whole = Information(found.matrix, found.right, 0.0, 0.0)
+    model = own_values(whole, found.precision, np.zeros(q))
+    shared = np.concatenate((np.zeros(q), model))
+    calibration = np.array([own_values(block, precision, shared) for block in blocks])
+    parts = _explained(stack, inverse, every, model, calibration, huber)
     return NuisanceElimination(
-        tows=tow_parts,
-        triangle=last[:q, :q],
-        right=last[:q, q],
-        model_triangle=of_model[:, :-1],
-        model=model,
-        cost=float(sum(tow_part.cost for tow_part in tow_parts) + 0.5 * model @ model),
+        tuple(
+            TowPart(
+                tow,
+                block,
+                stack.std[place, : len(tow.rows)],
+                every[place, : len(tow.rows)],
+                roots[place, : len(tow.rows)],
+                parts.own[place, : len(tow.rows)],
+                calibration[place],
+                parts.inputs[place, : len(tow.rows)],
+                float(parts.costs[place]),
+            )
+            for place, (tow, block) in enumerate(zip(tows, blocks, strict=True))
+        ),
+        found,
+        model,
     )
 
 
-def _eliminated(rows: FloatArray, number: int) -> FloatArray:
-    """Triangular rows with unit normal priors on the first columns added."""
-    prior = np.zeros((*rows.shape[:-2], number, rows.shape[-1]))
-    prior[..., :number] = np.eye(number)
-    return triangular(np.concatenate((prior, rows), axis=-2))
+@dataclass(frozen=True)
+class _Explained:
+    """Most likely errors of readings: ``own`` (t, n, k), ``inputs`` (t, n, 4), ``costs`` (t,)."""
 
-
-def triangular(rows: FloatArray) -> FloatArray:
-    """Triangular factor R of a QR decomposition of the rows."""
-    return np.asarray(np.linalg.qr(rows, mode='r'))
+    own: FloatArray
+    inputs: FloatArray
+    costs: FloatArray
 
 
 def _explained(
     stack: ErrorStack,
-    tows: Sequence[TowErrors],
-    roots: FloatArray,
     inverse: FloatArray,
     every: FloatArray,
-    triangles: FloatArray,
     model: FloatArray,
+    calibration: FloatArray,
     huber: float,
-) -> tuple[TowPart, ...]:
-    """Find the most likely errors, tow by tow."""
-    p, m = triangles.shape[1], len(model)
-    right = triangles[..., -1] - triangles[..., p : p + m] @ model
-    calibration = np.linalg.solve(triangles[..., :p], right[..., None])[:, None]
-    of_tow, of_model = stack.columns[..., :p], stack.columns[..., p : p + m]
-    left = stack.residual - (of_tow @ calibration)[..., 0] - of_model @ model
+) -> _Explained:
+    """Find the most likely errors at Δ = 0."""
+    m, p = len(model), calibration.shape[1]
+    of_model, of_tow = (
+        stack.columns[..., -(m + p + 1) : -(p + 1)],
+        stack.columns[..., -(p + 1) : -1],
+    )
+    left = stack.residual - of_model @ model - (of_tow @ calibration[:, None, :, None])[..., 0]
     solved = inverse.swapaxes(2, 3) @ (inverse @ left[..., None])
     inputs = (stack.inputs.swapaxes(2, 3) @ solved)[..., 0]
     own = stack.std / every * solved[..., 0] * stack.present
     size = np.abs(own)
     loss = np.where(size <= huber, 0.5 * size**2, huber * (size - 0.5 * huber))
-    calibration = calibration[:, 0, :, 0]
     squares = np.sum(inputs**2, (1, 2)) + np.sum(calibration**2, 1)
-    costs = loss.sum((1, 2)) + 0.5 * squares
-    return tuple(
-        TowPart(
-            errors=tow,
-            std=stack.std[place, : len(tow.rows)],
-            weights=every[place, : len(tow.rows)],
-            roots=roots[place, : len(tow.rows)],
-            triangle=triangles[place, :, :-1],
-            own=own[place, : len(tow.rows)],
-            calibration=calibration[place],
-            inputs=inputs[place, : len(tow.rows)],
-            cost=float(costs[place]),
-        )
-        for place, tow in enumerate(tows)
-    )
+    return _Explained(own, inputs, loss.sum((1, 2)) + 0.5 * squares)

@@ -3,11 +3,11 @@
 """Redundancy of readings: the share of their variance that is their own; roots of covariances."""
 
 import numpy as np
-from scipy.linalg import solve_triangular
 from scipy.special import erf, ndtr
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.fit.nuisance import NuisanceElimination, TowPart
+from trawl_ros.estimation.fit.nuisance import NuisanceElimination
+from trawl_ros.estimation.least_squares.information import extended_root
 
 
 def redundancy_numbers(
@@ -28,44 +28,32 @@ def redundancy_numbers(
         Of the posterior covariance (q, q) of the coefficients, S Sᵀ, in prior std.
     """
     shares = np.zeros(jacobian.shape[:2])
-    joint = joint_root(elimination, root)
-    for tow_part in elimination.tows:
+    for tow_part, every in zip(elimination.tows, tow_roots(elimination, root), strict=True):
         tow = tow_part.errors
-        p = tow_part.triangle.shape[0]
-        upper = np.concatenate((tow.model, jacobian[tow.rows]), axis=2)
-        solved = solve_triangular(tow_part.triangle[:, :p], np.eye(p))
-        of_tow = tow.calibration @ solved
-        of_upper = upper - of_tow @ tow_part.triangle[:, p:]
-        terms = np.concatenate((of_tow, of_upper @ joint), axis=2)
+        columns = np.concatenate((jacobian[tow.rows], tow.model, tow.calibration), axis=2)
         inverse = np.linalg.inv(tow_part.roots)
-        known = inverse.transpose(0, 2, 1) @ (inverse @ terms)
+        known = inverse.transpose(0, 2, 1) @ (inverse @ (columns @ every))
         own = np.einsum('nij,nij->nj', inverse, inverse) - np.einsum('nkt,nkt->nk', known, known)
         shares[tow.rows] = np.where(tow.present, tow_part.std**2 / tow_part.weights * own, 0.0)
     return shares
 
 
-def joint_root(elimination: NuisanceElimination, root: FloatArray) -> FloatArray:
-    """Root (m + q, m + q) of the posterior covariance of the model's errors and coefficients.
+def shared_root(elimination: NuisanceElimination, root: FloatArray) -> FloatArray:
+    """Root (q + m, q + m) of the posterior covariance of coefficients and the model's errors.
 
     ``root`` (q, q) is that of the coefficients alone.
     """
-    m, q = len(elimination.model), len(root)
-    solved = solve_triangular(elimination.model_triangle[:, :m], np.eye(m))
-    joint = np.zeros((m + q, m + q))
-    joint[:m, :m] = solved
-    joint[:m, m:] = -solved @ elimination.model_triangle[:, m:] @ root
-    joint[m:, m:] = root
-    return joint
+    return extended_root(elimination.joined.matrix, elimination.joined.precision, root)
 
 
-def calibration_root(tow_part: TowPart, joint: FloatArray) -> FloatArray:
-    """Root (p, p + m + q) of the posterior covariance of a tow's errors of calibration.
-
-    ``joint`` is from `joint_root`.
-    """
-    p = len(tow_part.triangle)
-    solved = solve_triangular(tow_part.triangle[:, :p], np.eye(p))
-    return np.hstack((solved, -solved @ tow_part.triangle[:, p:] @ joint))
+def tow_roots(elimination: NuisanceElimination, root: FloatArray) -> list[FloatArray]:
+    """Roots (q + m + p, q + m + p) of the posterior covariance of all parameters of each tow."""
+    shared = shared_root(elimination, root)
+    found = []
+    for tow in elimination.tows:
+        precision = np.ones(len(tow.information.right))
+        found.append(extended_root(tow.information.matrix, precision, shared))
+    return found
 
 
 def clipped_variance(limit: FloatArray) -> FloatArray:

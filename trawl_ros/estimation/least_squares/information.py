@@ -4,11 +4,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from trawl_ros.core.arrays import FloatArray
+
+LEAST_PRECISION = 1e-12
+"""Precision of a parameter of which neither data nor prior know anything."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +69,15 @@ class Information:
         By the prior's precision, not by the data's: by these a step along what several parameters
         share all but ends, because each of them alone seems well known.
         """
-        stays = damping * precision
+        # A parameter without a prior stays by its unit.
+        stays = damping * np.where(precision > 0.0, precision, 1.0)
         return self + Information(np.diag(stays), stays * at, 0.0, 0.0)
+
+    def about(self, place: FloatArray) -> 'Information':
+        """Return this with residuals of parameters 0, where they were those at a place (p,)."""
+        change = self.matrix @ place
+        square = self.square + float(place @ (2.0 * self.right + change))
+        return Information(self.matrix, self.right + change, square, self.log_determinant)
 
     def squared_misfit(self, at: FloatArray) -> float:
         """Square of the whitened residual at parameters (p,)."""
@@ -81,13 +92,36 @@ class Joined:
     ----------
     matrix, right : (s, s) and (s,) arrays
         Normal equations, without the prior.
-    negative_log_likelihood
-        Of the data, up to a constant, all parameters integrated out with their unit priors.
+    precision : (s,) array
+        Of the prior.
+    rest
+        Negative log-likelihood of the data at shared parameters of 0, up to a constant.
     """
 
     matrix: FloatArray
     right: FloatArray
-    negative_log_likelihood: float
+    precision: FloatArray
+    rest: float
+
+    @property
+    def posterior(self) -> FloatArray:
+        """Information (s, s) with the prior."""
+        return self.matrix + np.diag(self.precision)
+
+    @cached_property
+    def covariance(self) -> FloatArray:
+        """Posterior covariance (s, s); std of a million prior units where nothing is known."""
+        known = self.matrix + np.diag(np.maximum(self.precision, LEAST_PRECISION))
+        values, vectors = np.linalg.eigh(known)
+        found: FloatArray = (vectors / np.maximum(values, LEAST_PRECISION)) @ vectors.T
+        return found
+
+    @property
+    def negative_log_likelihood(self) -> float:
+        """Of the data, up to a constant, all parameters integrated out with their priors."""
+        root = cholesky(self.posterior, lower=True)
+        half = solve_triangular(root, self.right, lower=True)
+        return self.rest + float(np.log(np.diag(root)).sum()) - 0.5 * float(half @ half)
 
 
 def joined(blocks: Sequence[Information], precisions: Sequence[FloatArray], shared: int) -> Joined:
@@ -98,7 +132,7 @@ def joined(blocks: Sequence[Information], precisions: Sequence[FloatArray], shar
     blocks
         Information of each.
     precisions
-        Prior precisions (p,) of the parameters of each.
+        Prior precisions (p,) of the parameters of each; of the shared ones those of the first.
     shared
         Number of parameters, the first, that all blocks share.
     """
@@ -113,10 +147,8 @@ def joined(blocks: Sequence[Information], precisions: Sequence[FloatArray], shar
         right += block.right[:shared] - less[:shared, shared]
         value += 0.5 * (block.square - less[shared, shared] + block.log_determinant)
         value += float(np.log(np.diag(root)).sum()) - 0.5 * float(np.log(precision[shared:]).sum())
-    root = cholesky(matrix + np.eye(shared), lower=True)
-    half = solve_triangular(root, right, lower=True)
-    value += float(np.log(np.diag(root)).sum()) - 0.5 * float(half @ half)
-    return Joined(matrix, right, value)
+    precision = precisions[0][:shared] if len(precisions) else np.ones(shared)
+    return Joined(matrix, right, precision, value)
 
 
 def own_values(block: Information, precision: FloatArray, shared: FloatArray) -> FloatArray:
@@ -125,3 +157,22 @@ def own_values(block: Information, precision: FloatArray, shared: FloatArray) ->
     own = cholesky(block.matrix[s:, s:] + np.diag(precision[s:]), lower=True)
     found: FloatArray = cho_solve((own, True), block.right[s:] - block.matrix[s:, :s] @ shared)
     return found
+
+
+def extended_root(matrix: FloatArray, precision: FloatArray, root: FloatArray) -> FloatArray:
+    """Root (p, p) of the posterior covariance of all parameters, from that of the first.
+
+    Parameters
+    ----------
+    matrix : (p, p) array
+        Information of the data.
+    precision : (p,) array
+        Of the prior.
+    root : (f, f) array
+        Root S of the covariance S Sᵀ of the first f parameters.
+    """
+    f = len(root)
+    own = cholesky(matrix[f:, f:] + np.diag(precision[f:]), lower=True)
+    inverse = solve_triangular(own, np.eye(len(own)), lower=True).T
+    follows = -inverse @ (inverse.T @ matrix[f:, :f]) @ root
+    return np.block([[root, np.zeros((f, len(own)))], [follows, inverse]])

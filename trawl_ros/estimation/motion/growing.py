@@ -19,8 +19,9 @@ from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 
 @dataclass(frozen=True)
 class InputsPlace:
-    """Errors of a tow's inputs, however long it is: ``errors`` (e,) that stay, in std, and
-    ``drifts`` at the knots of each input, SI.
+    """Errors of a tow's inputs, however long it is.
+
+    ``errors`` (e,) stay, in std; ``drifts`` are those at the knots of each input, SI.
     """
 
     errors: FloatArray

@@ -12,11 +12,12 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.fit.linearised import measured_inputs
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.linear_problem import Place
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.information import LinearGroup
 from trawl_ros.estimation.motion.processes import GroupRows
 from trawl_ros.estimation.motion.sizes import LinearData
-from trawl_ros.estimation.motion.steps import Place, step
+from trawl_ros.estimation.motion.steps import linear_problem
 from trawl_ros.estimation.motion.towing.inputs import corrected
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -78,7 +79,8 @@ def hold_out_states(
             for linear, numbers in zip(fit.linear, tow_of, strict=True)
         ]
         data = restricted(fit.data, keep)
-        there = step(data, fit.parameters, prior, fit.sizes, options.largest_step)
+        problem = linear_problem(data, fit.parameters, prior, fit.sizes, options.largest_step)
+        there = problem.target()
         rows = [i for i, window in enumerate(windows) if window.state in fold]
         values = prior.start + prior.std * there[0][: len(prior)]
         net = fit.layouts[0].net(there[0]) if fit.net else None
@@ -91,8 +93,9 @@ def hold_out_states(
 def _inputs(
     fit: MotionFit, place: Place, window: SteadyWindow, tow_of: Sequence[tuple[int, ...]]
 ) -> FloatArray:
-    """Warp lengths and speed (3,) of a window, corrected for the errors in the part of its tow that
-    is nearest to it.
+    """Warp lengths and speed (3,) of a window, corrected for their errors.
+
+    The errors are those in the part of its tow that is nearest to it.
     """
 
     def away(number: int) -> float:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray, Slice
+from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
 from trawl_ros.estimation.fit.error_terms import GROUPS, MODEL_ANGLE, MODEL_FRACTION, group_of
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, channel_errors
@@ -183,11 +183,12 @@ def place_at(
     return places
 
 
-def linear_part(layout: TowLayout) -> FloatArray:
-    """Flags (p,), 1 for parameters that stay where the tow is linearised about nought: slow
-    motions, calibration and the constant errors of the model.
+def linear_part(layout: TowLayout) -> BoolArray:
+    """Flags (p,) of the parameters about whose zero a tow is linearised in any place.
+
+    They are slow motions, calibration and the constant errors of the model.
     """
-    flags = np.zeros(len(layout))
+    flags = np.zeros(len(layout), np.bool_)
     for part in (layout.of_model, layout.of_starts, layout.of_calibration):
-        flags[part] = 1.0
+        flags[part] = True
     return flags

@@ -23,8 +23,9 @@ POOR = 2.0
 
 @dataclass(frozen=True)
 class PoorStretch:
-    """Stretch that fits badly: its tow, where it begins (s), and the root mean square of its
-    whitened residuals.
+    """Stretch that fits badly.
+
+    Known are its tow, where it begins (s), and the root mean square of its whitened residuals.
     """
 
     tow: str
@@ -83,8 +84,9 @@ class MotionOutcome:
 
     @property
     def geometric_means(self) -> dict[str, float]:
-        """Geometric means over the coefficients of posterior over prior std of the ``windows`` and
-        the ``whole``, and their ``ratio``; 1 for no windows.
+        """Geometric means over the coefficients of posterior over prior std.
+
+        They are those of the ``windows`` and the ``whole``, and their ``ratio``; 1 for no windows.
         """
         return {
             'windows': 1.0 if self.windows is None else _mean(self.windows.std / self.prior.std),
@@ -109,8 +111,9 @@ class MotionOutcome:
 
     @property
     def swells(self) -> tuple[tuple[str, float], ...]:
-        """Swing of the tension, in std over its mean, with the name of each tow, or part of one,
-        that feels a swell.
+        """Swing of the tension, in std over its mean, in each tow that feels a swell.
+
+        It is given with the name of the tow, or of a part of one.
         """
         tows = [linear.tow for linear in self.fit.linear]
         return tuple((tow.name, tow.swell) for tow in tows if tow.swell)

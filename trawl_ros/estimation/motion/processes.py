@@ -36,8 +36,10 @@ predictions are not linear in what is unknown. Found on one tow of a finer plant
 
 @dataclass(frozen=True)
 class ErrorTimes:
-    """Correlation times (s) of the drift of sensors, of the model's error, and of what is wrong
-    with sensors by another amount in each state of a tow.
+    """Correlation times (s) of the errors.
+
+    They are those of the drift of sensors, of the model's error, and of errors of sensors that
+    differ from one state of a tow to the next.
     """
 
     drift: float = 30.0
@@ -129,8 +131,9 @@ class ErrorSizes:
         return (*self.noise, *self.drift, *self.model, *self.state, self.log)
 
     def of_group(self, group: int) -> FloatArray:
-        """Factors (5,) on noise, drift, model's error, what changes with states, and what is swift
-        in a group.
+        """Factors (5,) on the errors of a group.
+
+        They are those on noise, drift, model's error, what changes with states, and what is swift.
         """
         each = self.noise[group], self.drift[group], self.model[group], self.state[group]
         return np.array([*each, self.swift])
@@ -144,9 +147,10 @@ EXACT_MODEL = ErrorSizes(drift=NO_ERROR, model=NO_ERROR, state=NO_ERROR, swift=0
 
 @dataclass(frozen=True)
 class GroupRows:
-    """Rows (m,) of one group of channels: stretch and channel of each mean that is there, its
-    noise, the std there of a drift, an error of the model and one of the state of size 1, and its
-    change from stretch to stretch.
+    """Rows (m,) of one group of channels.
+
+    Given are stretch and channel of each mean that is there, its noise, the std there of a drift,
+    an error of the model and one of the state of size 1, and its change from stretch to stretch.
     """
 
     stretches: IntArray
@@ -227,8 +231,9 @@ def group_rows(tow: MovingTow, predicted: FloatArray, noise: FloatArray) -> list
 
 
 def changes(means: FloatArray) -> FloatArray:
-    """Change of means (n, k) from that of the stretch before or to that behind, the larger one; 0
-    where both are missing.
+    """Change of means (n, k) from the stretch before or to the one behind.
+
+    It is the larger one, and 0 where both are missing.
     """
     steps = np.abs(np.diff(means, axis=0))
     none = np.full((1, means.shape[1]), np.nan)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Search of a fit in motion: the place of least cost, and the steps that lead there."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -12,7 +12,8 @@ from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimate import NetFactor
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.least_squares.information import joined
+from trawl_ros.estimation.least_squares.descent import NO_STEP, Rest
+from trawl_ros.estimation.least_squares.linear_problem import LinearProblem, Place
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.information import LinearGroup
 from trawl_ros.estimation.motion.nuisances import (
@@ -23,20 +24,21 @@ from trawl_ros.estimation.motion.nuisances import (
 )
 from trawl_ros.estimation.motion.processes import ErrorSizes, group_rows
 from trawl_ros.estimation.motion.sizes import LinearData, estimated_sizes
-from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
+from trawl_ros.estimation.motion.steps import linear_problem, misfit
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.lineariser import TowLineariser
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.estimation.motion.weights import robust_factors
+from trawl_ros.solver.motion.guide import TowGuide
 from trawl_ros.solver.motion.parameters import NET
 
-DAMPING, STIFFER, LOOSER = 1.0, 30.0, 0.2
-"""First damping after a step that was refused, factors after each further one and after one that
-was taken."""
+COOLER = 0.4
+"""Factor from step to step on the errors of the data while these are taken for too large."""
 
-LEAST_DAMPING = 0.1
-"""Damping below this is none."""
+FINDINGS = 3
+"""Predictions after which weights and sizes of the errors are found, before they stay; and so do
+stretches that are lost."""
 
 ROUNDED = 1.0 + 1e-9
 """Factor within which costs are alike."""
@@ -47,12 +49,20 @@ LOST = 0.15
 ROUNDS, STAYS = 4, 0.1
 """Rounds of finding both after a towing; logarithm by which no size changes any more."""
 
+Guides = dict[int, Mapping[float, TowGuide]]
+"""Time steps of the moving parts of each tow, by their beginnings (s)."""
+
 OnTow = Callable[[int, int, int], None]
 
 
 @dataclass
 class MotionSearch:
-    """Search for the place of least cost: where it is, and the tows as they are there."""
+    """Search for the place of least cost: where it is, and the tows as they are there.
+
+    Data much sharper than what is known before would lead a full step to where boards fold. So all
+    errors are taken for larger by a factor ``temper`` at first. Weights and ``sizes`` of the errors
+    are ``found`` a few times and then stay, or the fit would never converge.
+    """
 
     gear: TowedGear
     tows: Sequence[MovingTow]
@@ -63,8 +73,13 @@ class MotionSearch:
     here: list[FloatArray]
     linear: tuple[LinearisedTow, ...] = ()
     noise: tuple[FloatArray, ...] = ()
-    damping: float = 0.0
     towings: int = 0
+    iteration: int = 0
+    sizes: ErrorSizes = field(default_factory=ErrorSizes)
+    temper: float = np.inf
+    found: int = 0
+    guides: Guides = field(default_factory=dict)
+    last_guides: Guides = field(default_factory=dict)
 
     def linearise(
         self, at: Place, iteration: int, before: Sequence[BoolArray] | None = None
@@ -91,8 +106,10 @@ class MotionSearch:
         for number, (tow, layout, z) in enumerate(zip(self.tows, self.layouts, at, strict=True)):
             point = point_of(tow, layout, z, self.prior.start, self.prior.std)
             towed = TowLineariser(
-                self.gear, tow.channels, point, partial(self.on_stretch, iteration, number)
-            )
+                self.gear, tow.channels, point, partial(self.on_stretch, iteration, number),
+                self.guides.get(number, {}),
+            )  # fmt: skip
+            self.last_guides[number] = towed.guides
             required = None if before is None else before[number]
             towed.extend(tow, point.drifts, required=required, spare=spare)
             found.append(towed.linearised(tow))
@@ -107,31 +124,60 @@ class MotionSearch:
 
     def begin(self) -> None:
         """Predict all tows where the search begins."""
-        self.noise = tuple(tow.noise for tow in self.tows)
+        self.noise, self.sizes = tuple(tow.noise for tow in self.tows), self.options.sizes
         self.linear = self.linearise(self.here, 0)
+        self.guides = dict(self.last_guides)
 
     def data(self, linear: Sequence[LinearisedTow], at: Place) -> LinearData:
         """Rows of linearised tows, by the weights as they are."""
         return linear_data(linear, self.layouts, at, self.prior, self.options, self.noise)
 
+    @property
+    def is_final(self) -> bool:
+        """True if the errors are taken as large as they were found."""
+        return self.temper == 1.0
+
+    def problem(self, sizes: ErrorSizes) -> LinearProblem:
+        """Linear problem of the tows as they are linearised."""
+        data, largest = self.data(self.linear, self.here), self.options.largest_step
+        return linear_problem(data, self.here, self.prior, sizes, largest)
+
     def target(self, sizes: ErrorSizes) -> list[FloatArray]:
         """Place to which the step without damping leads."""
-        data = self.data(self.linear, self.here)
-        return step(data, self.here, self.prior, sizes, self.options.largest_step)
+        return self.problem(sizes).target()
 
-    def fit(
-        self, sizes: ErrorSizes, place: Place, iterations: int, *, converged: bool, reason: str
-    ) -> MotionFit:
+    def linearised(self) -> LinearProblem:
+        """Return the linear problem here, with weights and sizes of the errors found again."""
+        self.iteration += 1
+        problem, data = self.problem(self.sizes), self.data(self.linear, self.here)
+        self.temper = max(1.0, min(COOLER * self.temper, misfit(data, problem, self.here)))
+        if self.is_final and self.found < FINDINGS:
+            self.found += 1
+            self.sizes = self.find(self.sizes)
+        problem = self.problem(self.tempered)
+        self.here = problem.projected(self.here, list(map(linear_part, self.layouts)))
+        return replace(problem, here=self.here)
+
+    @property
+    def tempered(self) -> ErrorSizes:
+        """Sizes of the errors as they are taken now."""
+        return self.sizes.tempered(self.temper)
+
+    def is_predicted(self, place: Place) -> bool:
+        """Return True: a step below the tolerance needs no further prediction."""
+        return True
+
+    def fit(self, sizes: ErrorSizes, place: Place, rest: Rest) -> MotionFit:
         """Record of the fit at a place, by the tows as they are linearised."""
         data, prior = self.data(self.linear, self.here), self.prior
-        told = joined(data.information(sizes), data.precisions(sizes.log), data.shared)
-        every = np.linalg.inv(told.matrix + np.eye(data.shared))
+        problem = self.problem(sizes)
+        every = problem.joined.covariance
         own, layout, known = slice(0, len(prior)), self.layouts[0], self.gear.net_std
         covariance = every[own, own]
         net_std = known * np.sqrt(np.diag(every)[layout.of_net])
         return MotionFit(
             values=prior.start + prior.std * place[0][own],
-            matrix=told.matrix,
+            matrix=problem.joined.matrix,
             covariance=covariance * np.outer(prior.std, prior.std),
             parameters=tuple(place),
             linear=self.linear,
@@ -139,11 +185,11 @@ class MotionSearch:
             layouts=self.layouts,
             sizes=sizes,
             readings=sum(len(group.residual) for groups in data.tows for group in groups),
-            misfit=misfit(data, place, sizes),
-            cost=cost(data, place, sizes),
-            iterations=iterations,
-            converged=converged,
-            reason=reason,
+            misfit=misfit(data, problem, place),
+            cost=problem.cost(place),
+            iterations=rest.iterations,
+            converged=rest.converged,
+            reason=rest.reason,
             net=tuple(
                 NetFactor(what, float(value), float(std), known)
                 for what, value, std in zip(NET, layout.net(place[0]), net_std, strict=False)
@@ -183,50 +229,37 @@ class MotionSearch:
             found.append(noise)
         self.noise = tuple(found)
 
-    def advance(
-        self, sizes: ErrorSizes, iteration: int, attempts: int, *, regain: bool = True
-    ) -> bool:
-        """Take a step that lowers the cost, ever shorter; tell whether one was found.
+    def move(self, place: Place, share: float) -> str:
+        """Move to a place if the cost is lower there; return the reason if it is refused.
 
-        Parameters
-        ----------
-        sizes
-            Of the errors.
-        iteration
-            Number of the step.
-        attempts
-            At most.
-        regain
-            True if stretches that were lost before count again where they can be towed along.
+        Stretches that were lost before count again where they can be predicted, as long as weights
+        are found.
         """
-        data = self.data(self.linear, self.here)
-        towed = towed_flags(self.linear)
-        for _ in range(attempts):
-            there = step(
-                data, self.here, self.prior, sizes, self.options.largest_step, self.damping
-            )
-            try:
-                tried = self.linearise(there, iteration, towed)
-            except NoSteadyState:
-                lower = False
-            else:
-                lower = self._is_lower(tried, there, sizes)
-            if lower:
-                self.linear = tried if regain else without(tried, self.linear)
-                self.here = there
-                self.damping *= LOOSER
-                if self.damping < LEAST_DAMPING:
-                    self.damping = 0.0
-                return True
-            self.damping = max(DAMPING, STIFFER * self.damping)
-            if self.is_spent:
-                break
-        return False
+        try:
+            tried = self.linearise(place, self.iteration, towed_flags(self.linear))
+        except NoSteadyState:
+            return 'every further step leads to where the model cannot be towed'
+        if not self.is_lower(tried, place, self.tempered):
+            return NO_STEP
+        self.linear = tried if self.found < FINDINGS else without(tried, self.linear)
+        self.here, self.guides = list(place), dict(self.last_guides)
+        return ''
 
-    def _is_lower(self, tried: Sequence[LinearisedTow], there: Place, sizes: ErrorSizes) -> bool:
+    def is_lower(self, tried: Sequence[LinearisedTow], there: Place, sizes: ErrorSizes) -> bool:
         """True if the cost is lower there; stretches that one place lacks belong to neither."""
-        before = cost(self.data(without(self.linear, tried), self.here), self.here, sizes)
-        return cost(self.data(without(tried, self.linear), there), there, sizes) <= before * ROUNDED
+        before = self.cost(without(self.linear, tried), self.here, sizes)
+        return self.cost(without(tried, self.linear), there, sizes) <= before * ROUNDED
+
+    def cost(self, linear: Sequence[LinearisedTow], place: Place, sizes: ErrorSizes) -> float:
+        """Cost of the place where tows are linearised.
+
+        Parameters that do not change the linearisation are at their best there (variable
+        projection, Golub and Pereyra 1973): shapes of the slowest motions differ from place to
+        place, and so does what their amplitudes mean.
+        """
+        data, largest = self.data(linear, place), self.options.largest_step
+        problem = linear_problem(data, place, self.prior, sizes, largest)
+        return problem.cost(problem.projected(place, list(map(linear_part, self.layouts))))
 
 
 def towed_flags(linear: Sequence[LinearisedTow]) -> list[BoolArray]:
@@ -277,7 +310,7 @@ def linear_data(
         slopes = columns(tow, layout, prior.std)
         if not options.nuisances:
             slopes[..., len(prior) : layout.of_net.start] = slopes[..., layout.of_gear :] = 0.0
-        towed = z * (1.0 - linear_part(layout))
+        towed = np.where(linear_part(layout), 0.0, z)
         residual = tow.residual + slopes @ towed
         groups = []
         for rows in group_rows(tow.tow, tow.values, own):

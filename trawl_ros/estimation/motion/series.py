@@ -258,8 +258,9 @@ def tow_readings(
 
 
 def payout_by_counter(counter: Series) -> Series:
-    """Pay-out speed (m/s) that a counter tells: medians of its changes, so that a counter which
-    leaps moves no warp.
+    """Pay-out speed (m/s) by a counter.
+
+    It is the median of the counter's changes, so that a counter that jumps moves no warp.
     """
     times, values = counter.times, counter.values
     later = np.searchsorted(times, times + CHANGE_S - 1e-6)

@@ -35,13 +35,6 @@ COUNTER_REACH_S = 600.0
 LEVEL_STEP_S = 10.0
 """Step of the grid on which they do."""
 
-SLOW_S, SLOW_SPEED_M_S, SLOW_TURN_RAD_S = 60.0, 0.03, 0.001
-"""Time over which log and compass are averaged, and what they change by then at most, that inputs
-hardly change."""
-
-FOLLOWED_S = 120.0
-"""Time in which the gear has followed a change but for its slow motions."""
-
 STEADY_ONLY = ('vertical_opening',)
 """Measured channels that count while the gear is steady only: an opening is stamped when its sweep
 begins."""
@@ -216,8 +209,10 @@ def _inputs(read: TowReadings, duration_s: float, options: StretchOptions) -> To
 
 
 def warp_path(counter: Series, payout: Series, grid: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Warp length and its rate (t,) on a grid (t,): the course by the pay-out speed, the level by
-    the counter. So no warp moves where a counter leaps while its winch stands.
+    """Warp length and its rate (t,) on a grid (t,).
+
+    The course comes from the pay-out speed, the level from the counter. So no warp moves where a
+    counter jumps while its winch stands.
     """
     way, speeds = paid_out(payout, grid)
     rest = counter.values - np.interp(counter.times, grid, way)

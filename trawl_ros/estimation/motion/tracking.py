@@ -16,25 +16,23 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.descent import Damping, Rest
 from trawl_ros.estimation.least_squares.information import own_values
-from trawl_ros.estimation.motion.fit import COOLER, NEAR
+from trawl_ros.estimation.least_squares.linear_problem import LinearProblem, Place
+from trawl_ros.estimation.motion.fit import NEAR
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.growing import GrowingLinearisation
 from trawl_ros.estimation.motion.nuisances import layout_of, place_at
 from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.estimation.motion.search import (
-    DAMPING,
-    LEAST_DAMPING,
-    LOOSER,
+    COOLER,
     ROUNDED,
-    STIFFER,
     MotionSearch,
     is_lost,
     towed_flags,
     without,
 )
-from trawl_ros.estimation.motion.sizes import LinearData
-from trawl_ros.estimation.motion.steps import Place, cost, misfit, step
+from trawl_ros.estimation.motion.steps import linear_problem, misfit
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
@@ -92,7 +90,7 @@ class MotionTracker:
         self._found: TrackedFit | None = None
         self._sizes, self._temper = options.sizes, np.inf
         self._weights: dict[int, FloatArray] = {}
-        self._damping, self._refused, self._again = 0.0, 0, 0.0
+        self._damping, self._refused, self._again = Damping(), 0, 0.0
         self._found_at, self._started_with = 0, 0
         self._towings, self._held = 0, False
 
@@ -157,7 +155,7 @@ class MotionTracker:
             return None
         sizes = self._sized(search).tempered(self._temper)
         place = search.target(sizes)
-        fit = search.fit(sizes, place, self._towings, converged=False, reason='')
+        fit = search.fit(sizes, place, Rest(False, '', self._towings, np.inf))
         if not fit.readings:
             return None
         away = self._prior.std * np.abs((place[0] - search.here[0])[: len(self._prior)])
@@ -199,9 +197,8 @@ class MotionTracker:
         if found.moved < NEAR:
             self._cool(COOLER * self._temper)
             return None
-        data, sizes = search.data(search.linear, search.here), self._sizes.tempered(self._temper)
-        largest = self._options.largest_step
-        there = step(data, search.here, self._prior, sizes, largest, self._damping)
+        problem = search.problem(self._sizes.tempered(self._temper))
+        there = problem.target(self._damping.value)
         return self._linearisation(search, there)
 
     def _linearisation(self, search: MotionSearch, place: Place) -> GrowingLinearisation:
@@ -221,27 +218,25 @@ class MotionTracker:
         linear, there = tried.linearised(search.tows), tried.place(search.tows, search.layouts)
         if self._here is not None and not self._lower(search, linear, there, sizes):
             self._refused += 1
-            self._damping = max(DAMPING, STIFFER * self._damping)
+            self._damping.refuse()
             if self._refused >= self._options.attempts:
-                self._refused, self._damping = 0, 0.0
+                self._refused, self._damping = 0, Damping()
                 self._cool(COOLER * self._temper)
                 self._again = GROWN * sum(map(len, search.tows))
             return
         self._here, self._refused = tried, 0
-        self._damping *= LOOSER
-        if self._damping < LEAST_DAMPING:
-            self._damping = 0.0
+        self._damping.accept()
         data = search.data(linear, there)
-        rest = misfit(data, _eliminated(search, data, there, self._sizes), self._sizes)
+        problem = linear_problem(data, there, self._prior, self._sizes, self._options.largest_step)
+        rest = misfit(data, problem, _eliminated(search, problem))
         self._cool(min(COOLER * self._temper, rest))
 
     def _cool(self, temper: float) -> None:
         """Take errors of stretches for so many times as large, and no less than at the end."""
         self._temper = max(1.0, temper)
 
-    @staticmethod
     def _lower(
-        search: MotionSearch, tried: Sequence[LinearisedTow], there: Place, sizes: ErrorSizes
+        self, search: MotionSearch, tried: Sequence[LinearisedTow], there: Place, sizes: ErrorSizes
     ) -> bool:
         """True if the cost is lower there, and hardly a stretch is lost."""
         if is_lost(towed_flags(tried), towed_flags(search.linear)):
@@ -251,20 +246,18 @@ class MotionTracker:
             (search.linear, tried, search.here), (tried, search.linear, there),
         ):  # fmt: skip
             data = search.data(without(one, other), place)
-            costs.append(cost(data, _eliminated(search, data, place, sizes), sizes))
+            problem = linear_problem(data, place, self._prior, sizes, self._options.largest_step)
+            costs.append(problem.cost(_eliminated(search, problem)))
         return costs[1] <= costs[0] * ROUNDED
 
 
-def _eliminated(
-    search: MotionSearch, data: LinearData, place: Place, sizes: ErrorSizes
-) -> list[FloatArray]:
+def _eliminated(search: MotionSearch, problem: LinearProblem) -> list[FloatArray]:
     """Place with all that is none of the gear itself as it fits best there.
 
     Stretches that came after a linearisation began were towed without errors of their own.
     """
-    parts = zip(data.information(sizes), data.precisions(sizes.log), place, strict=True)
     kept = search.layouts[0].of_gear
     return [
         np.concatenate((z[:kept], own_values(tow, precision, z[:kept])))
-        for tow, precision, z in parts
+        for tow, precision, z in zip(problem.blocks, problem.precisions, problem.here, strict=True)
     ]

@@ -20,6 +20,7 @@ from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.information import joined
 
 
 def unknowns(prior: ParameterVector, options: EstimatorOptions) -> ParameterVector:
@@ -75,18 +76,26 @@ def information_in(fit: Fit) -> FloatArray:
         With one window at least.
     """
     elimination = fit.elimination
-    of_tow, of_model = elimination.tows[-1].triangle, elimination.model_triangle
+    *others, newest = elimination.tows
     among = unknowns(fit.prior, fit.options)
     board = among.slice_of('coefficients')
-    linearised = [
-        of_tow,
-        np.pad(of_model, ((0, 0), (len(CALIBRATION), 0))),
-        np.pad(elimination.triangle, ((0, 0), (board.start, 0))),
-    ]
-    weights = np.zeros(len(among))
-    weights[board] = max(fit.options.prior_weight, 1e-12)
-    before = np.diag(weights)
-    information: FloatArray = sum((rows.T @ rows for rows in linearised), before)
+    # The estimator has the coefficients first, then the model's errors, then those of calibration.
+    order = np.concatenate(
+        (
+            np.arange(len(among) - len(CALIBRATION), len(among)),
+            np.arange(len(fit.prior), len(among) - len(CALIBRATION)),
+            np.arange(len(fit.prior)),
+        )
+    )
+    before = np.ones(len(among))
+    before[board] = max(fit.options.prior_weight, 1e-12)
+    information = newest.information.matrix[np.ix_(order, order)] + np.diag(before)
+    if others:
+        shared = len(among) - len(CALIBRATION)
+        blocks = [tow.information for tow in others]
+        of_others = joined(blocks, [np.ones(len(among))] * len(blocks), shared).matrix
+        place = order[len(CALIBRATION) :]
+        information[len(CALIBRATION) :, len(CALIBRATION) :] += of_others[np.ix_(place, place)]
     return information
 
 

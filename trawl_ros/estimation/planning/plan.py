@@ -217,8 +217,9 @@ def _look_up(
     explored: dict[Manoeuvre, TowableManoeuvre],
     on_progress: OnProgress,
 ) -> dict[Manoeuvre, Refused]:
-    """Look the legs up with another board, from the states near them that are known; give those
-    that are not to be had with it.
+    """Solve the legs with another board, from known states near them.
+
+    Return those that it has no steady state for.
     """
     wanted = sorted({leg.manoeuvre for leg in legs} - explored.keys())
     lost = {}

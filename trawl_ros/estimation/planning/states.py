@@ -91,8 +91,10 @@ class Limits:
 
 @dataclass(frozen=True)
 class TowableManoeuvre:
-    """Candidate: a feasible manoeuvre, the linearised model there, the decay time (s, to 1/e)
-    of its slowest motion, and the depth (m) of the gear's deepest point.
+    """Candidate: a feasible manoeuvre and the linearised model there.
+
+    Known too are the decay time (s, to 1/e) of its slowest motion, and the depth (m) of the gear's
+    deepest point.
     """
 
     manoeuvre: Manoeuvre

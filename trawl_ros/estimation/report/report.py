@@ -40,8 +40,10 @@ from trawl_ros.records.channels import INPUTS
 
 @dataclass(frozen=True)
 class TowOutcome:
-    """Outcome of a tow: its number, name, counts of windows and steady states, and the errors
-    (4,) in the channels of eq. 35 with which they were predicted when ``held_out``.
+    """Outcome of a tow.
+
+    Known are its number, name, counts of windows and steady states, and the errors (4,) in the
+    channels of eq. 35 with which they were predicted when ``held_out``.
     """
 
     tow: int

@@ -11,8 +11,8 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.fit.estimator import Estimator
+from trawl_ros.estimation.fit.fitted_estimate import GATE
 from trawl_ros.estimation.fit.linearised import Linearised, linearise
-from trawl_ros.estimation.fit.posterior import GATE
 from trawl_ros.estimation.fit.whiteness import Whiteness, ljung_box
 from trawl_ros.estimation.pipeline import WindowUsed
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
@@ -80,8 +80,9 @@ def solve_windows(
     net: FloatArray | None = None,
     own: Sequence['Equilibrium'] = (),
 ) -> list[Linearised | None]:
-    """Solve the model at the inputs of each window, from its own state where that is known, else
-    from the nearest one already solved.
+    """Solve the model at the inputs of each window.
+
+    It is solved from its own state where that is known, else from the nearest one already solved.
 
     Parameters
     ----------

@@ -25,8 +25,10 @@ from trawl_ros.records.channels import Channel
 
 @dataclass(frozen=True)
 class ChannelMean:
-    """``mean`` of ``count`` readings, its standard error ``noise``, how many outliers and false
-    echoes were ``excluded``, and how far it may be from where it will rest.
+    """Mean of ``count`` readings with its standard error ``noise``.
+
+    Known too are how many outliers and false echoes were ``excluded``, and how far it may be from
+    where it will settle.
     """
 
     mean: float

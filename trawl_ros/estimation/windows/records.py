@@ -164,8 +164,9 @@ class SteadyWindow:
         return math.sqrt(self.own_noise(channel) ** 2 + windows_in_state * shared)
 
     def own_noise(self, channel: str, least: float = 0.0) -> float:
-        """Standard deviation of a channel's error that no other window shares, its noise being
-        ``least`` at least.
+        """Standard deviation of a channel's error that no other window shares.
+
+        Its noise is taken for ``least`` at least.
         """
         return math.hypot(max(self.noise[channel], least), self.to_come.get(channel, 0.0))
 

@@ -63,7 +63,9 @@ def error_of_mean(values: FloatArray, stated: float) -> float:
 
 @dataclass(frozen=True)
 class Trend:
-    """Trend: change over the series by its fitted slope, the two-sided p-value, and the std of
+    """Trend of a series.
+
+    It is the change over the series by its fitted slope, the two-sided p-value, and the std of
     the change.
     """
 

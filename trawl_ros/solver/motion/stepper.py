@@ -64,15 +64,19 @@ class DifferentiatedStepper(Stepper):
     def __init__(self, model: GearModel, options: LinearisedStepOptions = STEP_OPTIONS) -> None:
         super().__init__(model, options)
 
-    def linearised_step(self, motion: Motion, tow: Tow, h: float) -> LinearisedStep:
+    def linearised_step(
+        self, motion: Motion, tow: Tow, h: float, guess: FloatArray | None = None
+    ) -> LinearisedStep:
         """Advance by ``h`` seconds to the boundary ``tow`` at the new time.
+
+        ``guess`` is an acceleration (dof,) at the end, from which the iterations begin.
 
         Raises
         ------
         StepFailed
             If the iteration does not converge, or the step is too long for a board.
         """
-        solved = self._solved(motion, tow, h)
+        solved = self._solved(motion, tow, h, guess)
         at = linearise_step(self.model, solved, tow)
         # One Newton step with the exact matrix, which is known now, takes the root to rounding.
         left = at.here.force - self.model.pattern.times(solved.inertia, solved.acceleration)
@@ -81,8 +85,15 @@ class DifferentiatedStepper(Stepper):
         self.factorisations += 1
         return at.at(SolvedStep(solved.step, new, solved.inertia))
 
-    def _solved(self, motion: Motion, tow: Tow, h: float) -> SolvedStep:
-        solved = super()._solved(motion, tow, h)
+    def _solved(
+        self, motion: Motion, tow: Tow, h: float, guess: FloatArray | None = None
+    ) -> SolvedStep:
+        try:
+            solved = super()._solved(motion, tow, h, guess)
+        except StepFailed:
+            if guess is None:
+                raise
+            solved = super()._solved(motion, tow, h)
         if h > self.options.always_accepted_s and is_too_long(motion, solved):
             raise StepFailed(f'the time step of {h:g} s was too long for the motion of a board')
         return solved

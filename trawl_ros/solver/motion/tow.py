@@ -20,6 +20,7 @@ from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.linear.factor import solve_refined
 from trawl_ros.solver.modes import linearised_motion
 from trawl_ros.solver.motion.course import CoursePoint, InputPoint, course_point
+from trawl_ros.solver.motion.guide import TowGuide
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.partials import (
     GearAtPoint,
@@ -70,11 +71,15 @@ class DifferentiatedTow:
         Equilibrium nearby, from which the search for the first one starts.
     options
         Options of the time steps.
+    guide
+        Steps of a tow along the same times, with other parameters.
 
     Attributes
     ----------
     time, steps
         Time reached, s, and number of steps taken.
+    noted
+        Its own steps, as a guide for others.
     model
         The gear there, with its effects.
     motion, slopes
@@ -98,7 +103,9 @@ class DifferentiatedTow:
         acting: EffectSet = NO_EFFECTS,
         start: Equilibrium | None = None,
         options: LinearisedStepOptions = STEP_OPTIONS,
+        guide: TowGuide | None = None,
     ) -> None:
+        self._guide, self.noted = guide, TowGuide()
         self._plain, self._acting, self._inputs = model, acting, inputs
         self.parameters, self.time, self.steps = parameters, 0.0, 0
         self._net: tuple[BarProperties, NetLoads] | None = None
@@ -138,13 +145,17 @@ class DifferentiatedTow:
         return self._stepper.factorisations
 
     def _advance(self, h: float, left: int) -> None:
-        try:
-            self.step(h)
-        except StepFailed:
-            if left == 0:
-                raise
-            self._advance(0.5 * h, left - 1)
-            self._advance(0.5 * h, left - 1)
+        if self._guide is None or not left or not self._guide.is_halved(self.time, h):
+            try:
+                self.step(h)
+            except StepFailed:
+                if left == 0:
+                    raise
+            else:
+                return
+        self.noted.note_halved(self.time, h)
+        self._advance(0.5 * h, left - 1)
+        self._advance(0.5 * h, left - 1)
 
     def step(self, h: float) -> None:
         """Advance by one step of ``h`` seconds.
@@ -160,7 +171,9 @@ class DifferentiatedTow:
         course = course_point(model, self._acting, self.parameters, point, self.course, h)
         self._stepper.model = model
         if self.parameters:
-            at = self._stepper.linearised_step(self.motion, course.tow, h)
+            guess = None if self._guide is None else self._guide.guess(self.time, h)
+            at = self._stepper.linearised_step(self.motion, course.tow, h, guess)
+            self.noted.note(self.time, h, at.solved.acceleration)
             motion = at.solved.step.motion(at.solved.acceleration)
             end = StepEnd(motion.state, motion.acceleration, course.tow, at.predicted)
             push = self._pushes(model, point, end, course)

@@ -15,8 +15,9 @@ from trawl_ros.solver.motion.course import InputPoint
 
 @dataclass(frozen=True)
 class ChannelError:
-    """Error of a channel that stays through the tow: what its instrument reads too much, as a part
-    of the value where ``relative``, and its std.
+    """Error of a channel that stays through the tow.
+
+    It is what the instrument reads too much, as a part of the value where ``relative``.
     """
 
     channel: str
@@ -194,8 +195,9 @@ class CorrectedInputs:
     def _additions(
         self, time: float, shown: FloatArray, rates: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Additions to inputs and rates, both (m, 3), by a unit of each parameter; what is shown
-        too large is less in truth.
+        """Additions to inputs and rates, both (m, 3), by a unit of each parameter.
+
+        What is shown too large is less in truth.
         """
         additions, paces = np.zeros((2, len(self.names), 3))
         additions[: len(INPUT_ERRORS)] = _by_errors(shown, 1.0)
@@ -216,8 +218,9 @@ def corrected(shown: FloatArray, errors: FloatArray) -> FloatArray:
 
 
 def _by_errors(values: FloatArray, offset: float) -> FloatArray:
-    """Additions (e, 3) to values (3,) by a std of each of `INPUT_ERRORS`, of which those that are
-    no part of a value add to ``offset``; what is shown too large is less in truth.
+    """Additions (e, 3) to values (3,) by a std of each of `INPUT_ERRORS`.
+
+    Those that are no part of a value add to ``offset``. What is shown too large is less in truth.
     """
     additions = np.zeros((len(INPUT_ERRORS), 3))
     for row, error in enumerate(INPUT_ERRORS):

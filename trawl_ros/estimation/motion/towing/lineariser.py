@@ -8,8 +8,9 @@ Between parts the amplitudes of the gear's slowest motions are carried. Where a 
 be predicted it is left out, and the next steady part begins with unknown amplitudes.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import NoReturn
 
 import numpy as np
@@ -17,7 +18,7 @@ import numpy as np
 from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.motion.towing.held import HeldGear, hold_gear, projection
-from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, CorrectedInputs, MeanInputs
+from trawl_ros.estimation.motion.towing.inputs import CorrectedInputs, MeanInputs
 from trawl_ros.estimation.motion.towing.linearisation import (
     SLOW_MOTIONS,
     Linearisation,
@@ -28,6 +29,7 @@ from trawl_ros.estimation.motion.towing.moving import MovingCourse, MovingGear
 from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
 from trawl_ros.estimation.windows.records import WindowOptions
+from trawl_ros.solver.motion.guide import TowGuide
 from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
@@ -40,6 +42,9 @@ BY_SENSOR = 'a board has fallen, by its sensor'
 NEARBY = np.array([*(WindowOptions.length_tolerance,) * 2, 0.5 * WindowOptions.speed_tolerance])
 """Largest departure of warp lengths (m) and speed (m/s) from those of an equilibrium that is used
 for a stretch."""
+
+
+NO_GUIDES: Mapping[float, TowGuide] = MappingProxyType({})
 
 
 class NotPredicted(Exception):
@@ -59,11 +64,15 @@ class TowLineariser:
         Point of linearisation.
     on_stretch
         Called after each stretch, with its number.
+    guides
+        Time steps of each moving part, by its beginning (s), at another point.
 
     Attributes
     ----------
     channels
         Measured channels.
+    guides
+        Time steps of each moving part here.
     """
 
     def __init__(
@@ -72,7 +81,9 @@ class TowLineariser:
         channels: tuple[str, ...],
         point: TowedPoint,
         on_stretch: Callable[[int], None] = lambda number: None,
+        guides: Mapping[float, TowGuide] = NO_GUIDES,
     ) -> None:
+        self._guides, self.guides = guides, dict[float, TowGuide]()
         self._gear, self._point, self._on_stretch = gear, point, on_stretch
         self.channels = channels
         self._held: HeldGear | None = None
@@ -230,17 +241,18 @@ class TowLineariser:
             self._amplitudes = unknown_amplitudes(0)
         else:
             since = begin - tow.held_s[round(begin / tow.stretch_s) - 1]
-            course.first = self._mean_inputs(tow, since, begin).values
+            course.first = self._mean_inputs(tow, since, begin)
             start = self._held.equilibrium
 
         def observed(towed: DifferentiatedTow) -> MotionPrediction:
             return gear.observed(towed, course(towed.time).situation, self.channels)
 
         towed = DifferentiatedTow(
-            gear.model_at(point), gear.parameters(inputs.names, motions=SLOW_MOTIONS), course,
-            gear.with_added_mass(point.added_mass), start,
+            gear.model_at(point), gear.parameters(course.names, motions=SLOW_MOTIONS), course,
+            gear.with_added_mass(point.added_mass), start, guide=self._guides.get(begin),
         )  # fmt: skip
-        moving = MovingGear(towed, course, observed)
+        self.guides[begin] = towed.noted
+        moving = MovingGear(towed, course, observed, self.channels)
         if self._held is not None:
             shapes = moving.seen.slopes[:, towed.parameters.of_motions]
             self._carry(self._held, begin, projection(shapes, self.channels))
@@ -259,8 +271,7 @@ class TowLineariser:
         """Prediction with what is left of the slowest motions from before."""
         parameters = moving.towed.parameters
         by = self._gear.parts(found.slopes, parameters)
-        by['errors'] = found.slopes[:, parameters.of_inputs][:, : len(INPUT_ERRORS)]
-        by.update(moving.knot_slopes(found.slopes))
+        by.update(moving.input_slopes(found.slopes))
         plain = Linearisation(found.values, by)
         if self._amplitudes is None:
             return plain

@@ -8,8 +8,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.motion.towing.inputs import CorrectedInputs, TowInputs
+from trawl_ros.estimation.motion.towing.held import projection
+from trawl_ros.estimation.motion.towing.inputs import (
+    INPUT_ERRORS,
+    CorrectedInputs,
+    MeanInputs,
+    TowInputs,
+)
 from trawl_ros.model.observables import fallen_boards
+from trawl_ros.records.channels import INPUTS
 from trawl_ros.solver.motion.course import InputPoint
 from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.tow import DifferentiatedTow
@@ -22,19 +29,35 @@ HIGHEST_M = 0.0
 class MovingCourse:
     """Course along which the model is towed; it may become longer on the way.
 
-    ``first`` are the inputs (3,) of the equilibrium in which the motion begins; those at its
+    ``first`` are the mean inputs of the equilibrium in which the motion begins; those at its
     beginning where None.
     """
 
     inputs: CorrectedInputs
-    first: FloatArray | None = None
+    first: MeanInputs | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the additions to the inputs; the last three are those to the first alone."""
+        firsts = () if self.first is None else tuple(f'first {name}' for name in INPUTS)
+        return (*self.inputs.names, *firsts)
 
     def __call__(self, time: float) -> InputPoint:
         """Inputs so many seconds after the motion began."""
         point = self.inputs(time)
-        if time > 0.0 or self.first is None:
+        if self.first is None:
             return point
-        return replace(point, inputs=self.first, rates=np.zeros(3), yaw_rate=0.0)
+        additions, paces = (
+            np.vstack((own, np.zeros((3, 3)))) for own in (point.errors, point.error_rates)
+        )
+        if time > 0.0:
+            return replace(point, errors=additions, error_rates=paces)
+        additions[:], paces[:] = 0.0, 0.0
+        additions[-3:] = np.eye(3)
+        return replace(
+            point, inputs=self.first.values, rates=np.zeros(3), yaw_rate=0.0,
+            errors=additions, error_rates=paces,
+        )  # fmt: skip
 
 
 @dataclass
@@ -47,6 +70,8 @@ class MovingGear:
         The tow of the model, and its inputs.
     observe
         Gives what is observed of the tow where it is.
+    channels
+        Names of the observables; not needed of inputs without knots.
     seen
         Observables now.
     """
@@ -54,8 +79,10 @@ class MovingGear:
     towed: DifferentiatedTow
     course: MovingCourse
     observe: Callable[[DifferentiatedTow], MotionPrediction]
+    channels: tuple[str, ...] = ()
     _newest: dict[str, int] = field(default_factory=dict)
     _newest_from: dict[str, float] = field(default_factory=dict)
+    _left: dict[str, dict[int, FloatArray]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for knots in self.inputs.inputs.knots:
@@ -68,8 +95,10 @@ class MovingGear:
         return self.course.inputs
 
     def follow(self, inputs: TowInputs, drifts: FloatArray, time: float | None = None) -> None:
-        """Follow inputs that have become longer, with errors at their knots; where they begin at
-        another time, ``time`` (s) is the present one in theirs, and none of them has knots.
+        """Follow inputs that have become longer, with errors at their knots.
+
+        Where they begin at another time, ``time`` (s) is the present one in theirs, and none of
+        them has knots.
         """
         later = 0.0 if time is None else time - self.time
         begin = self.inputs.begin + later
@@ -81,13 +110,20 @@ class MovingGear:
         return self.inputs.begin + self.towed.time
 
     def advance(self, h: float) -> None:
-        """Advance by a step; knots that begin to act take the columns of those forgotten."""
+        """Advance by a step; knots that begin to act take the columns of those forgotten.
+
+        The slowest motions outlast the columns: what a knot leaves of them is kept as amplitudes.
+        """
         for knots, _, first in self.inputs.inputs.knot_places:
             newest = knots.acting(self.time + 0.5 * h).stop - 1
             if newest > self._newest[knots.channel]:
                 self._newest[knots.channel] = newest
                 self._newest_from[knots.channel] = self.time
                 column = self._of_inputs + first + newest % knots.columns
+                if newest >= knots.columns:
+                    shapes = self.seen.slopes[:, self.towed.parameters.of_motions]
+                    left = projection(shapes, self.channels) @ self.seen.slopes[:, column]
+                    self._left.setdefault(knots.channel, {})[newest - knots.columns] = left
                 self.towed.forget(slice(column, column + 1))
         self.towed.advance(h)
 
@@ -120,14 +156,29 @@ class MovingGear:
             np.einsum('ki,ik->k', weights, values), np.einsum('ki,ikm->km', weights, slopes)
         )
 
-    def knot_slopes(self, slopes: FloatArray) -> dict[str, FloatArray]:
-        """Derivatives (k, number) by all knots of each input, from those (k, m) of the motion."""
-        found, of_inputs = {}, slopes[:, self.towed.parameters.of_inputs]
+    def input_slopes(self, slopes: FloatArray) -> dict[str, FloatArray]:
+        """Derivatives by the errors (k, e) of the inputs, and by all knots (k, number) of each.
+
+        Parameters
+        ----------
+        slopes : (k, m) array
+            Derivatives of the motion.
+        """
+        of_inputs, first_mean = slopes[:, self.towed.parameters.of_inputs], self.course.first
+        found = {'errors': of_inputs[:, : len(INPUT_ERRORS)]}
+        if first_mean is not None:
+            found['errors'] = found['errors'] + of_inputs[:, -3:] @ first_mean.by_errors.T
         for knots, _, first in self.inputs.inputs.knot_places:
             every = np.zeros((len(slopes), knots.number))
             acting = knots.acting(self.time - 1e-6)
             columns = [first + knot % knots.columns for knot in acting]
             every[:, acting.start : acting.stop] = of_inputs[:, columns]
+            for knot, left in self._left.get(knots.channel, {}).items():
+                every[:, knot] += slopes[:, self.towed.parameters.of_motions] @ left
+            if first_mean is not None:
+                weights = first_mean.by_knots[knots.channel]
+                by_first = of_inputs[:, INPUTS.index(knots.channel) - len(INPUTS)]
+                every[:, : len(weights)] += np.outer(by_first, weights)
             found[knots.channel] = every
         return found
 

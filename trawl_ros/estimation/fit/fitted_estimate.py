@@ -1,17 +1,18 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Posterior of a fit: its estimate, and the innovations of a window before it is used."""
+"""Estimate of a fit, with calibration errors of its tows, and innovations of a new window."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.fit.calibration import net_factors, tow_biases
-from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS
+from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS, TERMS
 from trawl_ros.estimation.fit.estimate import (
     Estimate,
     Innovation,
+    NetFactor,
+    TowBias,
     active_bounds,
     interval,
     is_determined,
@@ -19,6 +20,8 @@ from trawl_ros.estimation.fit.estimate import (
 )
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.linearised import Linearised
+from trawl_ros.estimation.fit.redundancy import shared_root, tow_roots
+from trawl_ros.records.channels import CHANNELS
 
 GATE = 3.0
 """Standard deviations at which an innovation's test ratio is 1."""
@@ -85,4 +88,51 @@ def posterior_estimate(
         innovation=innovation,
         converged=converged,
         reason=reason,
+    )
+
+
+def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
+    """Return the calibration errors by tow and channel, inputs included."""
+    share = fit.scheme.tow_share
+    biases = []
+    roots = tow_roots(fit.elimination, fit.posterior.root)
+    for tow, every in zip(fit.elimination.tows, roots, strict=True):
+        root = every[-len(tow.calibration) :]
+        windows = [fit.windows[row].window for row in tow.errors.rows]
+        for name in dict.fromkeys(term.channel for term in TERMS):
+            means = [window.means[name] for window in windows if name in window.means]
+            if not means:
+                continue
+            size = np.array(
+                [
+                    share * term.std * (float(np.mean(means)) if term.relative else 1.0)
+                    if term.channel == name
+                    else 0.0
+                    for term in TERMS
+                ]
+            )
+            biases.append(
+                TowBias(
+                    tow=windows[0].tow,
+                    channel=name,
+                    unit=CHANNELS[name].unit,
+                    value=float(size @ tow.calibration),
+                    std=float(np.linalg.norm(size @ root)),
+                    known=float(np.linalg.norm(size)),
+                )
+            )
+    return tuple(biases)
+
+
+def net_factors(fit: Fit) -> tuple[NetFactor, ...]:
+    """Return the factors on drag and weight of the net, if they are estimated along."""
+    if fit.net is None:
+        return ()
+    std = fit.scheme.net_std
+    root = shared_root(fit.elimination, fit.posterior.root)[len(fit.coefficients) :]
+    (rows,) = fit.scheme.model_errors.blocks('net')
+    return tuple(
+        NetFactor(what, float(value), float(known * np.linalg.norm(root[row])), float(known))
+        for what, value, known, row in zip(('drag', 'weight'), fit.net, std, rows, strict=True)
+        if known > 0.0
     )

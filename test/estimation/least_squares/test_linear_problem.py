@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from trawl_ros.estimation.least_squares.bounded_step import bounded_step, shared_std
 from trawl_ros.estimation.least_squares.information import Information
+from trawl_ros.estimation.least_squares.linear_problem import LinearProblem
 
 SHARED, OWN, ROWS = 3, 2, 30
 
@@ -46,7 +46,8 @@ def test_a_step_solves_all_blocks_at_once(blocks, damping):
     precision = np.ones(SHARED + OWN)
     free = np.full(SHARED, np.inf)
     here = [np.full(SHARED + OWN, 0.7)] * 2
-    found = bounded_step(information, [precision] * 2, here, -free, free, damping)
+    problem = LinearProblem(information, [precision] * 2, here, -free, free, SHARED)
+    found = problem.target(damping)
     rows, right = whole(blocks, damping, 0.7)
     expected = np.linalg.lstsq(rows, right, rcond=None)[0]
     for number, own in enumerate(found):
@@ -55,14 +56,21 @@ def test_a_step_solves_all_blocks_at_once(blocks, damping):
         np.testing.assert_allclose(own[SHARED:], expected[first : first + OWN], atol=1e-9)
     if not damping:
         covariance = np.linalg.inv(rows.T @ rows)
-        std = shared_std(information, [precision] * 2, SHARED)
-        np.testing.assert_allclose(std, np.sqrt(np.diag(covariance))[:SHARED])
+        std = np.sqrt(np.diag(covariance))[:SHARED]
+        np.testing.assert_allclose(problem.std, std)
+        away = np.abs(found[0][:SHARED] - 0.7) / std
+        assert problem.distance(found) == pytest.approx(away.max())
+        at = np.concatenate((found[0], found[1][SHARED:]))
+        left = right - rows @ at
+        assert problem.cost(found) == pytest.approx(0.5 * left @ left)
 
 
 def test_a_step_stays_within_its_bounds(blocks):
     information = [Information.whitened(*block) for block in blocks]
     here, high = [np.zeros(SHARED + OWN)] * 2, np.full(SHARED, 0.01)
-    found = bounded_step(information, [np.ones(SHARED + OWN)] * 2, here, -high, high)
+    found = LinearProblem(
+        information, [np.ones(SHARED + OWN)] * 2, here, -high, high, SHARED
+    ).target()
     assert np.all(np.abs(found[0][:SHARED]) <= 0.01 + 1e-12)
     np.testing.assert_array_equal(found[0][:SHARED], found[1][:SHARED])
 
@@ -73,4 +81,6 @@ def test_the_misfit_is_that_of_the_whitened_residual(blocks):
     left = np.linalg.solve(root, residual - columns @ at)
     information = Information.whitened(root, columns, residual)
     assert information.squared_misfit(at) == pytest.approx(left @ left)
+    moved = information.about(-at)
+    assert moved.squared_misfit(np.zeros_like(at)) == pytest.approx(left @ left)
     assert Information.none(4).squared_misfit(np.ones(4)) == 0.0
