@@ -324,10 +324,12 @@ class GearRecord(Record):
         """Return the properties of a bridle, or of the sweep."""
         return self.bridle.model_copy(update=own.changes)
 
-    def with_around(self, around: int) -> 'GearRecord':
-        """Return a copy of the gear with ``around`` meshes around its net, and rows that match."""
-        netting = self.netting.model_copy(update={'around': around})
-        return self.model_copy(update={'netting': netting})
+    def changed(self, part: str, **keys: object) -> 'GearRecord':
+        """Return a copy of the gear with other values of some keys of a part.
+
+        ``changed('netting', around=24)`` gives a net with 24 meshes around, and rows that match.
+        """
+        return self.model_copy(update={part: getattr(self, part).model_copy(update=keys)})
 
     def refined(
         self, *, warp: int = 1, bridle: int = 1, net: float = 1.0, unjoined: bool = False

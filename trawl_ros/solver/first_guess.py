@@ -127,7 +127,7 @@ def coarser_model(model: GearModel) -> GearModel | None:
 
 @lru_cache(maxsize=4)
 def _coarse(gear: GearRecord, around: int) -> GearModel:
-    return build_model(gear.with_around(around))
+    return build_model(gear.changed('netting', around=around))
 
 
 def carried_over(coarse: GearModel, found: State, model: GearModel) -> State:

@@ -44,8 +44,8 @@ SEED = 1
 
 def plant_of(gear: GearRecord) -> GearModel:
     """Gear that differs from its model: its net has more drag."""
-    drag = {'normal_drag': gear.netting.normal_drag * MORE_DRAG}
-    return build_model(gear.model_copy(update={'netting': gear.netting.model_copy(update=drag)}))
+    drag = gear.netting.normal_drag * MORE_DRAG
+    return build_model(gear.changed('netting', normal_drag=drag))
 
 
 def trial(
@@ -115,7 +115,9 @@ class Fitted:
 def measure(quick: bool) -> Findings:
     """Fit by sensitivities, by differences, and by coordinate search."""
     gear = (
-        default_gear(quick=True) if quick else default_gear(quick=False).with_around(MESHES_AROUND)
+        default_gear(quick=True)
+        if quick
+        else default_gear(quick=False).changed('netting', around=MESHES_AROUND)
     )
     model, prior = build_model(gear), board_prior(gear)
     lengths, speeds = (LENGTHS[2:3], SPEEDS[1:2]) if quick else (LENGTHS, SPEEDS)

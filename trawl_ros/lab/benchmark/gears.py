@@ -11,5 +11,4 @@ def default_gear(*, quick: bool) -> GearRecord:
     gear = load_gear('kaifuha')
     if not quick:
         return gear
-    warp = gear.warp.model_copy(update={'segments': 6})
-    return gear.model_copy(update={'warp': warp}).with_around(12)
+    return gear.changed('warp', segments=6).changed('netting', around=12)

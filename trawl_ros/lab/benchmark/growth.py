@@ -67,7 +67,7 @@ def measure(quick: bool) -> Findings:
     gear = default_gear(quick=False)
     sizes, refused = [], 'no finer one was tried'
     for around in MESHES_AROUND[:2] if quick else MESHES_AROUND:
-        model = build_model(gear.with_around(around))
+        model = build_model(gear.changed('netting', around=around))
         try:
             sizes.append(_size(model, quick=quick))
         except (NoSteadyState, StepFailed) as error:

@@ -203,7 +203,7 @@ def measure(quick: bool) -> Findings:
     """Run the trials."""
     record = default_gear(quick=quick)
     if not quick:
-        record = record.with_around(MESHES_AROUND)
+        record = record.changed('netting', around=MESHES_AROUND)
     gear, factor = TowedGear(build_model(record)), PRIOR_STD_FACTOR * (0.2 if quick else 1.0)
     rows: list[MeasuredValue] = []
     seeds, duration = (SEEDS[:1], 80.0) if quick else (SEEDS, DURATION_S)

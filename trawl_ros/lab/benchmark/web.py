@@ -102,7 +102,7 @@ def measure(quick: bool) -> Findings:
 
 
 def _smaller(scheme: str, damping: float) -> MeasuredValue:
-    model = build_model(default_gear(quick=False).with_around(COARSE_AROUND))
+    model = build_model(default_gear(quick=False).changed('netting', around=COARSE_AROUND))
     found = best_of(_stable(model, ((scheme, damping),), quick=False))
     note = f'a net of {COARSE_AROUND} meshes around, {len(model.ends)} lines, {model.nodes} points'
     return MeasuredValue('the same on a smaller web', found.factor, '× real time', note=note)

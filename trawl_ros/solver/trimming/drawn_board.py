@@ -137,7 +137,7 @@ def draw_board(
     False
     """
     gear.require_boards('that could be drawn')
-    coarse = build(gear.with_around(min(options.around, gear.netting.around)))
+    coarse = build(gear.changed('netting', around=min(options.around, gear.netting.around)))
     rejected: Counter[str] = Counter()
     for _ in range(options.most_draws):
         coefficients = _drawn(gear, rng, options.std_factor)

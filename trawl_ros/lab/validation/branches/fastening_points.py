@@ -39,7 +39,7 @@ def run(quick: bool) -> Findings:
     """Trim the gear with its warp point farther forward, and compare."""
     gear = load_gear('kaifuha')
     if quick:
-        gear = gear.with_around(12)
+        gear = gear.changed('netting', around=12)
     shipped = build_model(gear)
     leans = {'shipped': leaned(shipped)}
     rows = [_fold_row('shipped', 'shipped', _folds(shipped))]

@@ -171,7 +171,7 @@ def run(quick: bool) -> Findings:
     size = SMALL if quick else FULL
     gear = load_gear('kaifuha')
     if quick:
-        gear = gear.with_around(12)
+        gear = gear.changed('netting', around=12)
     model = build_model(gear)
     # Compiling at first use is no time of an answer.
     middle = find_equilibrium(model, OperatingPoint(MIDDLE, MIDDLE, SPEED))
@@ -232,8 +232,7 @@ def _without_reason(speeds: Lattice) -> MeasuredValue:
 
 def _bowed(model: GearModel, size: SearchSize) -> MeasuredValue:
     """Check the usable places on the shortest warp, with twine that bows under the water's load."""
-    netting = model.gear.netting.model_copy(update={'bowing_pressure_pa': BOWING_PRESSURE_PA})
-    bowed = build_model(model.gear.model_copy(update={'netting': netting}))
+    bowed = build_model(model.gear.changed('netting', bowing_pressure_pa=BOWING_PRESSURE_PA))
     length, refused = size.lengths[0], []
     speeds = [speed for speed in size.speeds if speed >= WORKING[0]]
     for speed in speeds:

@@ -162,7 +162,7 @@ def run(quick: bool) -> Findings:
     """Haul with decreasing steps."""
     gear = load_gear('kaifuha')
     if quick:
-        gear = gear.with_around(12)
+        gear = gear.changed('netting', around=12)
     haul = WireHaul(8.0, 50.0) if quick else WireHaul(50.0, 300.0)
     steps = STEPS[:2] if quick else STEPS
     model = build_model(gear)

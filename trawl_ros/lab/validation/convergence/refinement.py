@@ -123,13 +123,15 @@ def run(quick: bool) -> Findings:
     lengths = (500.0,) if quick else (200.0, 500.0, 900.0)
     gear = load_gear('kaifuha')
     if quick:
-        gear = gear.with_around(12)
+        gear = gear.changed('netting', around=12)
     default = row('default', gear, lengths)
     finer = [row(name, gear.refined(**factors), lengths) for name, factors in FINER.items()]
     own = gear.netting.around
     more = gear.refined(**FINER['net']).netting.around
     counts = [] if quick else [count for count in SERIES if count not in (own, more)]
-    series = {count: row(str(count), gear.with_around(count), lengths) for count in counts}
+    series = {
+        count: row(str(count), gear.changed('netting', around=count), lengths) for count in counts
+    }
     series[own] = default
     series[more] = next(one for one in finer if one.name == 'net')
     bowed_rows, bowed_table = bowed_nets(gear, (own, more) if quick else BOWED_MESHES_AROUND)
@@ -278,15 +280,13 @@ def bowed_nets(
 ) -> tuple[list[MeasuredValue], TextTable]:
     """Solve the gear with all nets, cold, and compare the default net with the finest one."""
     seen = {
-        kind: {count: _observed(_netted(gear, count, pressure)) for count in counts}
+        kind: {
+            count: _observed(gear.changed('netting', around=count, bowing_pressure_pa=pressure))
+            for count in counts
+        }
         for kind, pressure in KINDS.items()
     }
     return list(_bowed_checks(seen, gear.netting.around)), _table(seen)
-
-
-def _netted(gear: GearRecord, around: int, pressure: float) -> GearRecord:
-    update = {'around': around, 'bowing_pressure_pa': pressure}
-    return gear.model_copy(update={'netting': gear.netting.model_copy(update=update)})
 
 
 def _observed(gear: GearRecord) -> FloatArray:

@@ -208,9 +208,9 @@ def run(quick: bool) -> Findings:
     size = SMALL if quick else FULL
     gear = load_gear('kaifuha')
     if quick:
-        gear = gear.with_around(12)
-    bowed = gear.netting.model_copy(update={'bowing_pressure_pa': BOWING_PRESSURE_PA})
-    taut = _smooth(build_model(gear.model_copy(update={'netting': bowed})), size)
+        gear = gear.changed('netting', around=12)
+    bowed = gear.changed('netting', bowing_pressure_pa=BOWING_PRESSURE_PA)
+    taut = _smooth(build_model(bowed), size)
     model = build_model(gear)
     smooth = _smooth(model, size)
     ramp = convergence(

@@ -82,7 +82,7 @@ def gear(quick: bool) -> GearRecord:
     record = load_gear('kaifuha')
     if not quick:
         return record
-    return record.with_around(record.netting.around // COARSENING_FACTOR)
+    return record.changed('netting', around=record.netting.around // COARSENING_FACTOR)
 
 
 def paper_model(quick: bool) -> GearModel:

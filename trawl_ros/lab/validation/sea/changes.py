@@ -38,7 +38,7 @@ class Change:
 
 
 def _strumming(gear: GearRecord) -> GearRecord:
-    return gear.model_copy(update={'warp': gear.warp.model_copy(update={'normal_drag': STRUMMING})})
+    return gear.changed('warp', normal_drag=STRUMMING)
 
 
 def _net_drag(gear: GearRecord) -> GearRecord:
@@ -51,18 +51,8 @@ def _no_floats(gear: GearRecord) -> GearRecord:
 
 
 def _unshielded(gear: GearRecord) -> GearRecord:
-    netting = gear.netting
-    assert netting.plan is not None
-    plan = netting.plan.model_copy(update={'shielded': False})
-    netting = netting.model_copy(update={'plan': plan})
-    return gear.model_copy(update={'netting': netting})
-
-
-def _netting(name: str) -> Callable[[GearRecord], GearRecord]:
-    def changed(gear: GearRecord) -> GearRecord:
-        return gear.model_copy(update={'netting': gear.netting.model_copy(update={name: 0.0})})
-
-    return changed
+    assert gear.netting.plan is not None
+    return gear.changed('netting', plan=gear.netting.plan.model_copy(update={'shielded': False}))
 
 
 CHANGES = (
@@ -71,8 +61,11 @@ CHANGES = (
     Change(f'net drag × {NET_DRAG:g}', _net_drag),
     Change(f'{100 * (SPEED_FACTOR - 1):.0f} % faster', speed=SPEED_FACTOR),
     Change('the last three', lambda gear: _strumming(_net_drag(gear)), SPEED_FACTOR),
-    Change("no growth of twine's drag at low Reynolds numbers", _netting('viscous')),
-    Change('no lift of sheets', _netting('lift')),
+    Change(
+        "no growth of twine's drag at low Reynolds numbers",
+        lambda gear: gear.changed('netting', viscous=0.0),
+    ),
+    Change('no lift of sheets', lambda gear: gear.changed('netting', lift=0.0)),
     Change('no floats', _no_floats),
 )
 

@@ -61,7 +61,7 @@ def _hung(kind: str) -> Callable[[GearRecord, float], GearRecord]:
 
 def _strumming(gear: GearRecord, factor: float) -> GearRecord:
     drag = factor * gear.warp.normal_drag
-    return gear.model_copy(update={'warp': gear.warp.model_copy(update={'normal_drag': drag})})
+    return gear.changed('warp', normal_drag=drag)
 
 
 DOUBTS = (

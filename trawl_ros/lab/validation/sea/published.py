@@ -152,8 +152,7 @@ class HaulRecord(Record):
             plan = thinner(plan, self.thinner)
         except TrawlError as reason:
             raise TrawlError(f'{where}: {reason}') from reason
-        netting = gear.netting.model_copy(update={'plan': plan})
-        return gear.model_copy(update={'netting': netting})
+        return gear.changed('netting', plan=plan)
 
 
 class GearHauls(Record):

@@ -58,10 +58,7 @@ def _pieces(
         plan = gear.netting.plan
         assert plan is not None
         pieces = tuple(p.model_copy(update=change(p, factor)) for p in plan.pieces)
-        netting = gear.netting.model_copy(
-            update={'plan': plan.model_copy(update={'pieces': pieces})}
-        )
-        return gear.model_copy(update={'netting': netting})
+        return gear.changed('netting', plan=plan.model_copy(update={'pieces': pieces}))
 
     return changed
 
@@ -83,20 +80,9 @@ def _around(piece: PieceRecord, factor: float) -> dict[str, object]:
     }  # fmt: skip
 
 
-def _netting(name: str) -> Callable[[GearRecord, float], GearRecord]:
+def _key(part: str, name: str) -> Callable[[GearRecord, float], GearRecord]:
     def changed(gear: GearRecord, factor: float) -> GearRecord:
-        value = factor * getattr(gear.netting, name)
-        return gear.model_copy(update={'netting': gear.netting.model_copy(update={name: value})})
-
-    return changed
-
-
-def _rope(rope: str, name: str) -> Callable[[GearRecord, float], GearRecord]:
-    def changed(gear: GearRecord, factor: float) -> GearRecord:
-        record = getattr(gear, rope)
-        return gear.model_copy(
-            update={rope: record.model_copy(update={name: factor * getattr(record, name)})}
-        )
+        return gear.changed(part, **{name: factor * getattr(getattr(gear, part), name)})
 
     return changed
 
@@ -110,16 +96,16 @@ def _floats(gear: GearRecord, factor: float) -> GearRecord:
 
 DOUBTS = (
     Doubt('twine, thickness', _pieces(_twine), 0.6, 1.4),
-    Doubt('knots, thickness', _netting('knot_diameters'), 0.5, 1.4),
-    Doubt('friction along twine', _netting('friction'), 0.5, 4.0),
-    Doubt('codend, angle of its meshes', _netting('codend_mesh_angle_deg'), 0.5, 2.0),
+    Doubt('knots, thickness', _key('netting', 'knot_diameters'), 0.5, 1.4),
+    Doubt('friction along twine', _key('netting', 'friction'), 0.5, 4.0),
+    Doubt('codend, angle of its meshes', _key('netting', 'codend_mesh_angle_deg'), 0.5, 2.0),
     Doubt('body, meshes along', _pieces(_long), 0.7, 1.4),
     Doubt('body, meshes around', _pieces(_around), 0.8, 1.25),
-    Doubt('headrope, length', _rope('headrope', 'length_m'), 1.0, 1.1),
-    Doubt('headrope, weight', _rope('headrope', 'weight_in_water_n_m'), 0.0, 2.0),
-    Doubt('upper bridles, weight', _rope('bridle', 'weight_in_water_n_m'), 0.0, 1.5),
+    Doubt('headrope, length', _key('headrope', 'length_m'), 1.0, 1.1),
+    Doubt('headrope, weight', _key('headrope', 'weight_in_water_n_m'), 0.0, 2.0),
+    Doubt('upper bridles, weight', _key('bridle', 'weight_in_water_n_m'), 0.0, 1.5),
     Doubt('floats (printed), buoyancy', _floats, 1.0, 2.0),
-    Doubt('growth of drag at low Reynolds numbers', _netting('viscous'), 0.0, 1.0),
+    Doubt('growth of drag at low Reynolds numbers', _key('netting', 'viscous'), 0.0, 1.0),
     Doubt('twine as large as at sea', tank_twine=False),
 )
 
