@@ -32,6 +32,9 @@ from trawl_ros.model.water import build_water
 STRETCHES = StretchOptions(step_s=3.0, stretch_s=30.0, knot_s=30.0, counter_knot_s=90.0)
 """Of a tow of hours; the linearised tow costs some twenty times less time than it took at sea."""
 
+START_TOLERANCE = 0.5
+"""Part of every std to which the steady parts alone are fitted, where the fit of all begins."""
+
 STAGE = 'towing all of it'
 
 Refused = Callable[[str], None]
@@ -138,7 +141,8 @@ def fit_tows(
         detail = f'step {iteration}, tow {tow + 1}{of}, minute {minute:.0f}'
         on_progress(WorkProgress(STAGE, done, None, 's', detail))
 
-    steady = fit_steady(towed, tows, prior, options, start, show)
+    rough = replace(options, tolerance=START_TOLERANCE)
+    steady = fit_steady(towed, tows, prior, rough, start, show)
     if steady is not None and steady.converged and steady.readings:
         start = list(steady.parameters)
     fit = fit_motion(towed, tows, prior, options, start, show)

@@ -241,16 +241,20 @@ class Stepper:
     ) -> SolvedStep:
         model, options, step = self.model, self.options, Step(motion, h, self.scheme)
         by_velocity, by_position = self.scheme.by_velocity(h), self.scheme.by_position(h)
-        new = motion.averaged.copy() if guess is None else guess
+        new = predicted = motion.averaged
+        state = step.state(predicted)
         # Added mass turns with the ropes. Taken at the predicted place once a step, it
         # keeps the second order of the method and leaves M out of the Jacobian.
-        inertia = mass(model, step.state(motion.averaged), tow)
+        inertia = mass(model, state, tow)
+        if guess is not None:
+            new = guess
         last, patch, enough = np.inf, NO_PATCH, options.tolerance * h**3
         # In full Newton, corrections may grow before they shrink.
         full_newton = keep_rate == 0.0
         most = options.full_newton_iterations if full_newton else options.iterations
         for iteration in range(most):
-            state = step.state(new)
+            if new is not predicted:
+                state = step.state(new)
             if self._factor is None:
                 here = linearised(model, state, tow)
                 force = here.force

@@ -105,7 +105,7 @@ class LinearProblem:
             blocks.append(Information(matrix, left.right[own], left.square, left.log_determinant))
             precisions.append(precision[own])
         found = joined(blocks, precisions, int(np.sum(free[0][: self.shared])))
-        common = np.linalg.solve(found.posterior, found.right)
+        common: FloatArray = np.asarray(np.linalg.solve(found.posterior, found.right), np.float64)
         best = [np.array(z) for z in place]
         for z, own, block, precision in zip(best, free, blocks, precisions, strict=True):
             z[own] = np.concatenate((common, own_values(block, precision, common)))

@@ -71,15 +71,13 @@ class DifferentiatedTow:
         Equilibrium nearby, from which the search for the first one starts.
     options
         Options of the time steps.
-    guide
-        Steps of a tow along the same times, with other parameters.
+    guide, noted
+        Steps of a tow along the same times, with other parameters; where to note those of this one.
 
     Attributes
     ----------
     time, steps
         Time reached, s, and number of steps taken.
-    noted
-        Its own steps, as a guide for others.
     model
         The gear there, with its effects.
     motion, slopes
@@ -104,8 +102,9 @@ class DifferentiatedTow:
         start: Equilibrium | None = None,
         options: LinearisedStepOptions = STEP_OPTIONS,
         guide: TowGuide | None = None,
+        noted: TowGuide | None = None,
     ) -> None:
-        self._guide, self.noted = guide, TowGuide()
+        self._guide, self._noted = guide, noted
         self._plain, self._acting, self._inputs = model, acting, inputs
         self.parameters, self.time, self.steps = parameters, 0.0, 0
         self._net: tuple[BarProperties, NetLoads] | None = None
@@ -153,7 +152,8 @@ class DifferentiatedTow:
                     raise
             else:
                 return
-        self.noted.note_halved(self.time, h)
+        if self._noted is not None:
+            self._noted.note_halved(self.time, h)
         self._advance(0.5 * h, left - 1)
         self._advance(0.5 * h, left - 1)
 
@@ -173,7 +173,8 @@ class DifferentiatedTow:
         if self.parameters:
             guess = None if self._guide is None else self._guide.guess(self.time, h)
             at = self._stepper.linearised_step(self.motion, course.tow, h, guess)
-            self.noted.note(self.time, h, at.solved.acceleration)
+            if self._noted is not None:
+                self._noted.note(self.time, h, at.solved.acceleration)
             motion = at.solved.step.motion(at.solved.acceleration)
             end = StepEnd(motion.state, motion.acceleration, course.tow, at.predicted)
             push = self._pushes(model, point, end, course)

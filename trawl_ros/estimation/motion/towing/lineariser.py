@@ -10,7 +10,6 @@ be predicted it is left out, and the next steady part begins with unknown amplit
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from types import MappingProxyType
 from typing import NoReturn
 
 import numpy as np
@@ -44,9 +43,6 @@ NEARBY = np.array([*(WindowOptions.length_tolerance,) * 2, 0.5 * WindowOptions.s
 for a stretch."""
 
 
-NO_GUIDES: Mapping[float, TowGuide] = MappingProxyType({})
-
-
 class NotPredicted(Exception):
     """Reason why a stretch has no prediction."""
 
@@ -65,7 +61,8 @@ class TowLineariser:
     on_stretch
         Called after each stretch, with its number.
     guides
-        Time steps of each moving part, by its beginning (s), at another point.
+        Time steps of each moving part, by its beginning (s), at another point; None if those here
+        are not to be noted either.
 
     Attributes
     ----------
@@ -81,7 +78,7 @@ class TowLineariser:
         channels: tuple[str, ...],
         point: TowedPoint,
         on_stretch: Callable[[int], None] = lambda number: None,
-        guides: Mapping[float, TowGuide] = NO_GUIDES,
+        guides: Mapping[float, TowGuide] | None = None,
     ) -> None:
         self._guides, self.guides = guides, dict[float, TowGuide]()
         self._gear, self._point, self._on_stretch = gear, point, on_stretch
@@ -244,14 +241,18 @@ class TowLineariser:
             course.first = self._mean_inputs(tow, since, begin)
             start = self._held.equilibrium
 
+        noted = None
+        if self._guides is not None:
+            noted = self.guides[begin] = TowGuide()
+
         def observed(towed: DifferentiatedTow) -> MotionPrediction:
             return gear.observed(towed, course(towed.time).situation, self.channels)
 
         towed = DifferentiatedTow(
             gear.model_at(point), gear.parameters(course.names, motions=SLOW_MOTIONS), course,
-            gear.with_added_mass(point.added_mass), start, guide=self._guides.get(begin),
+            gear.with_added_mass(point.added_mass), start,
+            guide=None if self._guides is None else self._guides.get(begin), noted=noted,
         )  # fmt: skip
-        self.guides[begin] = towed.noted
         moving = MovingGear(towed, course, observed, self.channels)
         if self._held is not None:
             shapes = moving.seen.slopes[:, towed.parameters.of_motions]
