@@ -14,7 +14,7 @@ from trawl_ros.lab.missing_effect.trials_folder import (
     read_trials,
 )
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
 
 
 def test_a_trial_is_made_answered_and_scored(tmp_path):
