@@ -1,5 +1,6 @@
 """A graph for tests of other people's nodes: its waits, commands, faults, and what it says."""
 
+import time
 from functools import partial
 
 import numpy as np
@@ -117,6 +118,19 @@ def test_without_a_scenario_a_wait_is_in_wall_time(trawl_graph):
     graph = trawl_graph([partial(Node, 'somebody')])
     with pytest.raises(AssertionError, match='0 s of wall time'):
         graph.until(lambda: False, 0.2)
+
+
+def test_a_node_that_compiles_for_long_does_not_stand_still(trawl_graph):
+    graph = trawl_graph([])
+    busy, done = Node('busy', context=graph.context), []
+
+    def compile_loops():
+        time.sleep(3.0)
+        done.append(1)
+
+    busy.create_timer(0.01, compile_loops)
+    graph.executor.add_node(busy)
+    graph.until(lambda: len(done) == 2, timeout_s=2.5)
 
 
 def test_nodes_of_the_package_run_as_processes(trawl_graph, tow):

@@ -20,7 +20,7 @@ from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.running.own_graph import own_graph
 from trawl_ros.lab.running.processes import NodeFailed, Processes
 
-RATES_HZ = (500.0, 1000.0)
+RATES_HZ = (500.0, 1000.0, 5000.0)
 """Total message rates; the first one has the target."""
 
 DURATION_S = 60.0
