@@ -13,8 +13,7 @@ from typing import Any
 
 import click
 
-from trawl_ros.cli.console.loaded_group import LoadedGroup
-from trawl_ros.cli.options import UNITS_KEY
+from trawl_ros.cli.console.loaded_group import UNITS_KEY, LoadedGroup
 from trawl_ros.core.display_units import METRIC
 from trawl_ros.core.errors import NoSteadyState, TrawlError, sentence_of
 from trawl_ros.core.first_start import need_home

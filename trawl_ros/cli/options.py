@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from trawl_ros.cli.console.loaded_group import UNITS_KEY
 from trawl_ros.core.display_units import METRIC, DisplayUnits, parse_units, parse_value
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.resources import packaged_bag
@@ -85,9 +86,6 @@ class QuantityNumber(Number):
                 self.fail(str(error), param, ctx)
         return super().convert(value, param, ctx)
 
-
-UNITS_KEY = 'trawl_ros.units'
-"""Key of the chosen units among what click keeps of a command."""
 
 WARP = QuantityNumber('warp', *LIMITS.warp_m)
 SPEED = QuantityNumber('speed', *LIMITS.speed_m_s)

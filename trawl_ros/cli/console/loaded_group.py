@@ -8,6 +8,9 @@ from typing import Any
 
 import click
 
+UNITS_KEY = 'trawl_ros.units'
+"""Key of the chosen units among what click keeps of a command."""
+
 
 class LoadedGroup(click.Group):
     """Group of commands, each loaded when it is called.
