@@ -64,6 +64,8 @@ def write_long_tow(folder: Path, gear: str, hours: float, truth_rate_hz: float =
             {**LEGS[step % len(LEGS)], 'minutes': minutes / number} for step in range(number)
         ],
         'truth_rate_hz': truth_rate_hz,
+        # Not fitted by default; here every topic is heard.
+        'instruments': {'door': {'slant_range': {'rate_hz': 0.5, 'noise_m': 1.0}}},
     }
     path = folder / 'long_tow.yaml'
     write_text(path, yaml.safe_dump(record, sort_keys=False))
