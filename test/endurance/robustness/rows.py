@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from endurance.robustness.changed_values import tow_outcome
 from endurance.robustness.random_commands import commanded_hour
-from trawl_ros.lab.report.rates import rate
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
+from trawl_ros.lab.report.rates import rate
 from trawl_ros.model.gear_model import build_model
 
 
