@@ -13,7 +13,7 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.core.resources import share_path
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.estimator import Estimator
-from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
+from trawl_ros.estimation.fit.objective import objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -26,9 +26,6 @@ from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.scenario.scenario import true_coefficients
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.predict import Prediction, Predictor
-
-STAND_STILL = EstimatorOptions(tolerance=1e9)
-"""Options with a tolerance so large that windows are added without changing the coefficients."""
 
 
 class _Remembering(Predictor):
@@ -105,19 +102,19 @@ def refit_paper_trial(record: GearRecord, windows: Sequence[SteadyWindow]) -> Pa
     """
     prior = board_prior(record)
     predictor = _Remembering(build_model(record))
-    gathered = Estimator(predictor, prior, OBSERVABLES, STAND_STILL)
-    for window in windows:
-        gathered.add(window)
-    if gathered.estimate is None:
-        raise NoSteadyState('the gear has no steady state at the start in any window of the trial')
-    fit = gathered.subset({window.state for window in gathered.windows}, EstimatorOptions())
+    fit = Estimator(predictor, prior, OBSERVABLES)
+    at_start = fit.predictions(prior.start, windows)
+    predictor.attack.clear()
+    measured = stack([paper_values(window.means) for window in windows])
+    fit.take(windows)
     estimate = fit.finish()
-    assert estimate is not None
-    history = [entry.objective for entry in fit.history]
+    if estimate is None:
+        raise NoSteadyState('the gear has no steady state at the start in any window of the trial')
+    steps = [entry.objective for entry in fit.history[:-1]]
     return PaperRefit(
         estimate=estimate,
         prior=prior,
         truth=true_coefficients(share_path(*SCENARIO)),
-        objective=np.array([gathered.estimate.objective, *history]),
+        objective=np.array([objective(at_start, measured), *steps, estimate.objective]),
         attack=(min(predictor.attack.values()), max(predictor.attack.values())),
     )
