@@ -15,7 +15,7 @@ from trawl_ros.diagnosis.repair import repaired, source
 from trawl_ros.diagnosis.report.result import result
 from trawl_ros.diagnosis.report.sentences import headline, sentences
 from trawl_ros.diagnosis.report.writing import write_diagnosis
-from trawl_ros.estimation.fit.estimator import POOR
+from trawl_ros.estimation.fit.estimator import POOR_MISFIT
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import build_model
@@ -140,13 +140,13 @@ def test_a_baseline_keeps_the_boards_out_of_it(beside_baseline):
     assert low < 0.15 < high or np.isclose(values['scale'][0], 0.15, atol=0.03)
 
 
-@pytest.mark.parametrize('poor', [POOR, pytest.param(0.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize('poor', [POOR_MISFIT, pytest.param(0.0, marks=pytest.mark.slow)])
 def test_what_was_found_is_not_in_the_baseline(
     beside_baseline, with_cells, hide, poor, monkeypatch
 ):
     # However good the first fit is, with 0 the boards are fitted without the effect, which then
     # comes in.
-    monkeypatch.setattr(fit_beside, 'POOR', poor)
+    monkeypatch.setattr(fit_beside, 'POOR_MISFIT', poor)
     gear = repaired(beside_baseline, [])
     again = diagnose_windows(gear, with_cells, hide.names[:6], BEFORE)
     assert again.verdict == 'NO_DISCREPANCY', again.reason

@@ -10,7 +10,7 @@ from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.diagnosis.inference.candidates import Candidate, extended, lower_edges, signatures
 from trawl_ros.diagnosis.inference.refit import OPTIONS, Refit, converged, fit_boards, likelier
 from trawl_ros.effects.effect_set import ActiveEffect
-from trawl_ros.estimation.fit.estimator import POOR, Estimator
+from trawl_ros.estimation.fit.estimator import POOR_MISFIT, Estimator
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -40,7 +40,7 @@ def fit_beside(
     with_effects = fit_boards(predictor, prior, windows, start=predictor.model.coefficients)
     steady = [effect for effect in predictor.fixed.effects if not effect.effect.dynamic]
     added = [effect for effect in steady if effect.name in predictor.new]
-    if not added or (with_effects is not None and with_effects.fit.birge_ratio < POOR):
+    if not added or (with_effects is not None and with_effects.fit.birge_ratio < POOR_MISFIT):
         return with_effects
     without = replace(predictor, fixed=predictor.fixed.without(predictor.new))
     base = fit_boards(without, prior, windows)

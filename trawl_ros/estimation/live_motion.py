@@ -96,7 +96,7 @@ class LiveMotion:
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew with no tow."""
+        """Begin again with no tow."""
         self._recorder = TowRecorder(self._depth)
         self._tracker = MotionTracker(self._towed, self._prior, self._options)
         self._number = 0

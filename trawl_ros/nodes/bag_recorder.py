@@ -178,7 +178,7 @@ class BagRecorder(TrawlNode):
             max_file_bytes=self.parameters['max_bag_size'],
             max_file_ns=round(self.parameters['max_bag_duration'] * SECOND),
         )
-        # Started anew it may hear readings before truth, of which the rest went by meanwhile: the
+        # Started again it may hear readings before truth, of which the rest went by meanwhile: the
         # simulation would wait for it, and it for more truth.
         self._progress = ConsumerProgress(self, idle=lambda: not self._hears_truth())
         # Topics that pace the progress: truth comes at every instant, markers now and then.

@@ -240,9 +240,9 @@ class IdentificationNode(TrawlNode):
     def _feeder(self, topic: str) -> Callable[[Any], None]:
         def feed(message: Any) -> None:
             sample = to_sample(topic, message)
-            anew, samples = self._rewinding.take(sample)
-            if anew:
-                self._begin_anew()
+            again, samples = self._rewinding.take(sample)
+            if again:
+                self._begin_again()
             for one in samples:
                 if one is sample:
                     self._instruments.check(topic, sample)
@@ -250,7 +250,7 @@ class IdentificationNode(TrawlNode):
 
         return feed
 
-    def _begin_anew(self) -> None:
+    def _begin_again(self) -> None:
         self._resets += 1
         self._instruments.forget()
         self._worker.reset()

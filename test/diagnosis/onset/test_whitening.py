@@ -12,7 +12,13 @@ from trawl_ros.diagnosis.onset.ratios import FEWEST, MOVING, RatioBank, rarity
 from trawl_ros.diagnosis.onset.responses import LEAP_TAPS, LOG_TAPS, OnsetResponses
 from trawl_ros.diagnosis.onset.stretches import LIVE, CounterLeap, LastStretch
 from trawl_ros.diagnosis.onset.towing import TowedStretch
-from trawl_ros.diagnosis.onset.whitening import AWAY, LEANING, LEANING_S, MOST, WhiteningFilter
+from trawl_ros.diagnosis.onset.whitening import (
+    AWAY,
+    LEANING,
+    LEANING_S,
+    MAX_INNOVATION,
+    WhiteningFilter,
+)
 from trawl_ros.effects.base.effect import Situation
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import GROUPS
@@ -74,7 +80,7 @@ def test_innovations_are_the_marks_of_what_made_them_and_never_beyond_the_edge(s
     seen, evidence = watched(size)
     for innovations, mark in seen:
         np.testing.assert_allclose(innovations, size * mark, rtol=1e-6, atol=1e-6)
-        assert np.abs(innovations).max() <= MOST + 1e-9
+        assert np.abs(innovations).max() <= MAX_INNOVATION + 1e-9
     told = evidence['tension_cell']
     assert told.ratio == max(one.ratio for one in evidence.values())
 

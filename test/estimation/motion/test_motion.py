@@ -304,11 +304,11 @@ def test_stretches_in_which_derivatives_explode_are_left_out_and_told(coarse, mo
     usual = linearise_tow(TowedGear(coarse), tow, point)
     assert usual.towed.all()
     sharp = np.abs(usual.by_coefficients) / tow.noise[..., None]
-    assert sharp.max() < 0.1 * lineariser.UNSTABLE
+    assert sharp.max() < 0.1 * lineariser.UNSTABLE_DERIVATIVE
     silent = tow.noise.copy()
     silent[1, 0] = np.nan
     assert linearise_tow(TowedGear(coarse), replace(tow, noise=silent), point).towed.all()
-    monkeypatch.setattr(lineariser, 'UNSTABLE', 0.5 * sharp[1:].max())
+    monkeypatch.setattr(lineariser, 'UNSTABLE_DERIVATIVE', 0.5 * sharp[1:].max())
     there = linearise_tow(TowedGear(coarse), tow, point)
     assert not there.towed.all()
     assert any('unstable' in part.why for part in there.left_out)

@@ -27,7 +27,7 @@ NO_ANSWER = '---'
 TIME = 'time'
 """Column of the time, as 2026-08-01 10:38:51 in the clock of the file."""
 
-NEIGHBOURS = 5
+MEDIAN_READINGS = 5
 """Readings on either side from whose median a jump is measured."""
 
 MIN_JUMP_M = 1.5
@@ -259,7 +259,7 @@ def _blank_false_pulses(rows: _Rows) -> Counter[str]:
         ]
         values = np.array([[float(own[name]) for name in names] for own in cells])
         for at, own in enumerate(cells):
-            near = values[max(0, at - NEIGHBOURS) : at + NEIGHBOURS + 1]
+            near = values[max(0, at - MEDIAN_READINGS) : at + MEDIAN_READINGS + 1]
             jump, opposite = values[at] - np.median(near, axis=0)
             largest_sum = MAX_SUM_RATIO * abs(jump) + MAX_SUM_M
             if abs(jump) > MIN_JUMP_M and abs(jump + opposite) < largest_sum:

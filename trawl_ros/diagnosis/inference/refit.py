@@ -36,7 +36,7 @@ way some windows lose their steady state. What the model is wrong by changes wit
 warps, which would pass for an effect. Readings that scatter less than is stated make neither model
 nor the form of an effect better, so that what these are wrong by must not count the more."""
 
-POOR = 3.0
+POOR_MISFIT = 3.0
 """A misfit from where the boards are fitted again, another way."""
 
 REFITTING = replace(OPTIONS, iterations_final=8, attempts=3)
@@ -118,7 +118,7 @@ def fit_boards(
     together.take(windows)
     estimate = together.finish()
     at_once = None if estimate is None else Refit((), together, estimate)
-    if at_once is not None and at_once.fit.birge_ratio < POOR:
+    if at_once is not None and at_once.fit.birge_ratio < POOR_MISFIT:
         return at_once
     # Far from where they start boards may get stuck, which window by window they need not.
     by_turns = Estimator(predictor, prior, OBSERVABLES, options)

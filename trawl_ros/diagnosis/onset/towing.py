@@ -16,7 +16,7 @@ from trawl_ros.effects.base.effect import Effect, Situation, sense
 from trawl_ros.effects.effect_set import EffectSet
 from trawl_ros.estimation.fit.error_terms import MODEL_ANGLE, MODEL_FRACTION
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, without_errors
-from trawl_ros.estimation.motion.towing.lineariser import BY_SENSOR, UNSTABLE
+from trawl_ros.estimation.motion.towing.lineariser import BY_SENSOR, UNSTABLE_DERIVATIVE
 from trawl_ros.estimation.motion.towing.moving import MovingCourse, MovingGear
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.model.gear_model import GearModel
@@ -253,7 +253,8 @@ class ModelTow:
             return 'the gear of the model breaks the surface'
         mean = motion.average(seen, weights, now)
         unstable = (
-            np.abs(mean.slopes[:, self._parameters.of_coefficients]) > UNSTABLE * noise[:, None]
+            np.abs(mean.slopes[:, self._parameters.of_coefficients])
+            > UNSTABLE_DERIVATIVE * noise[:, None]
         )
         if np.any(unstable):
             return 'the motion of the model is unstable'

@@ -74,7 +74,7 @@ class Whitened:
     residual
         As they are.
     root : (r, r) array
-        Lower root of their covariance, as wide as none of them is beyond `MOST`.
+        Lower root of their covariance, as wide as none of them is beyond `MAX_INNOVATION`.
     rows
         Flags (k,) of the watched channels that are among them.
     gain : (s, r) array
@@ -263,7 +263,7 @@ class WhiteningFilter:
         root = np.linalg.cholesky(model @ self.variance @ model.T + np.diag(white))
         # A reading far off is one at the edge of errors that large: in the filter and in all that
         # a signature leaves in it, or what explains such readings would not be what made them.
-        far = np.maximum(np.abs(solve_triangular(root, residual, lower=True)) / MOST, 1.0)
+        far = np.maximum(np.abs(solve_triangular(root, residual, lower=True)) / MAX_INNOVATION, 1.0)
         # The filter is moved as by the edge itself: where boards are not known yet, all is far off.
         known = solve_triangular(root, model @ self.variance, lower=True) / far[:, None]
         gain = solve_triangular(root, known, trans='T', lower=True).T
@@ -383,5 +383,5 @@ def _starts(coefficients: int) -> tuple[int, ...]:
     return tuple(int(one) for one in np.cumsum((0, *sizes)))
 
 
-MOST = 4.0
+MAX_INNOVATION = 4.0
 """Size of whitened innovations, at most: one reading alone is no onset."""

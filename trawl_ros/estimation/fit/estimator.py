@@ -3,7 +3,7 @@
 """Estimator of the coefficients from steady windows, robust and within bounds.
 
 For constant parameters this is an iterated Kalman filter: every window stays in memory with
-its linearisation, and is solved anew when the estimate has moved so far that first order
+its linearisation, and is solved again when the estimate has moved so far that first order
 would no longer do. There is no forgetting: without excitation it would wind up.
 """
 
@@ -30,7 +30,7 @@ from trawl_ros.estimation.windows.records import SteadyWindow
 if TYPE_CHECKING:
     from trawl_ros.solver.equilibrium import Equilibrium
 
-POOR = 1.2
+POOR_MISFIT = 1.2
 """Misfit from where a fit may have come to rest in a wrong place. Chance does not get there with
 the readings of a tow; with those of one window it may, and then a second fit costs little."""
 
@@ -135,7 +135,7 @@ class Estimator:
             # First order has led the estimate where the gear has no steady state at all.
             self._from_start()
         converged, reason = self._rest_with_all()
-        doubtful = self._fit.birge_ratio > POOR or not converged
+        doubtful = self._fit.birge_ratio > POOR_MISFIT or not converged
         if self.options.second_start and self._fit.windows and doubtful:
             # The first windows, with what was known then, may have led into another valley.
             first, without, course = self._fit, self._without, list(self.history)

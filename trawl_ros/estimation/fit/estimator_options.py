@@ -44,7 +44,7 @@ class EstimatorOptions:
     largest_step
         Largest change of a coefficient in one step, in prior std.
     relinearise, relinearise_final
-        A window is solved anew when a predicted reading has moved by this many std, on the
+        A window is solved again when a predicted reading has moved by this many std, on the
         way and at the end.
     set_aside
         Part of the windows that are left out where they have no steady state on the way, and taken

@@ -28,7 +28,7 @@ LAST_ROUND = 1e-3
 """Steps below this part of every coefficient's std, and factors on the noise that change by less,
 end the rounds."""
 
-SHORTER = 0.5
+SHORTER_STEP = 0.5
 """The part of a step that is taken where full steps lead to and fro."""
 
 GETTING_ON = 0.5
@@ -112,7 +112,7 @@ class WindowSearch:
         target = most_likely(self.fit, low, high)
         size = float(np.max(np.abs(target.coefficients - self.fit.coefficients) / target.std))
         # The share of the errors changes with a step, and may change back with the next.
-        self._pace = SHORTER if size > GETTING_ON * self._last else 1.0
+        self._pace = SHORTER_STEP if size > GETTING_ON * self._last else 1.0
         self._last = size
         self.fit = replace(self.fit, scales=target.scales)
         return replace(self.fit, weights=target.weights).linear_problem(low, high)

@@ -17,7 +17,7 @@ from trawl_ros.estimation.motion.towing.records import LeftOut
 
 HALF_95 = float(ndtri(0.975))
 
-POOR = 2.0
+POOR_MISFIT = 2.0
 """Root mean square of a stretch's whitened residuals from which it fits badly."""
 
 
@@ -152,7 +152,7 @@ class MotionOutcome:
             white = self._whitened(number)
             for stretch in np.flatnonzero(np.isfinite(white).any(axis=1)):
                 size = float(np.sqrt(np.nanmean(white[stretch] ** 2)))
-                if size > POOR:
+                if size > POOR_MISFIT:
                     begin = stretch * linear.tow.stretch_s
                     found.append(PoorStretch(linear.tow.name, float(begin), size))
         return tuple(sorted(found, key=lambda each: -each.size))

@@ -1,9 +1,9 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Fit of tows that grow: solved anew with each stretch, linearised anew where it has moved.
+"""Fit of tows that grow: solved again with each stretch, linearised again where it has moved.
 
 The model is towed along each stretch of the tows once, as it comes, and what is linearised so far
-is solved anew. Where the estimate has moved from the place of that linearisation, all so far is
+is solved again. Where the estimate has moved from the place of that linearisation, all so far is
 towed again there, some stretches with each new one, so that no estimate waits for it. At the end
 of the tows a fit from beginning to end (`fit`) has the last word.
 """
@@ -45,7 +45,7 @@ HOLDS, FAR = 0.5, 1.0
 and beyond which it ends to."""
 
 GROWN = 1.5
-"""Factor by which a tow grows before sizes of the errors are found anew, or a step is tried again
+"""Factor by which a tow grows before sizes of the errors are found again, or a step is tried again
 that was refused."""
 
 MOST_FOUND = 240
@@ -168,7 +168,7 @@ class MotionTracker:
         return TrackedFit(fit, moved, self._towings)
 
     def _sized(self, search: MotionSearch) -> ErrorSizes:
-        """Sizes of the errors, found anew where the tow has grown."""
+        """Sizes of the errors, found again where the tow has grown."""
         stretches = sum(map(len, search.tows))
         grown = stretches > GROWN * self._found_at and stretches <= MOST_FOUND
         if self._temper == 1.0 and grown:

@@ -38,7 +38,7 @@ _Known = Mapping[Manoeuvre, TowableManoeuvre]
 
 STALE = 1.0
 """Departure of a coefficient, in std of the prior, from where a manoeuvre was looked up, beyond
-which it is looked up anew."""
+which it is looked up again."""
 
 
 class Adviser:
@@ -120,7 +120,7 @@ class Adviser:
         ----------
         coefficients
             The present estimate (12,). When it has moved too far from where manoeuvres were
-            looked up, all are looked up anew, and meanwhile the old ones serve.
+            looked up, all are looked up again, and meanwhile the old ones serve.
         near
             State in which the ship is; by default the middle of the limits.
         """
@@ -146,7 +146,7 @@ class Adviser:
         return True
 
     def _begun(self, coefficients: FloatArray, near: Manoeuvre | None) -> Explorer:
-        """Begin anew with an estimate, unless it could not tow the gear as the ship does."""
+        """Begin again with an estimate, unless it could not tow the gear as the ship does."""
         before = self._explorer
         explorer = Explorer(self._predictor, coefficients, self._limits)
         if before is not None and near is not None and self._known:

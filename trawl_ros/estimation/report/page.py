@@ -16,7 +16,7 @@ from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.estimation.report.result import result
 from trawl_ros.estimation.report.sensors import sensor_cells, sensor_headings
-from trawl_ros.estimation.report.verdict import BEYOND, verdict
+from trawl_ros.estimation.report.verdict import LARGEST_TEST_RATIO, verdict
 from trawl_ros.estimation.windows.records import REASONS
 from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report.pictures import Picture, by_section, draw, embedded
@@ -131,7 +131,7 @@ def _residual(row: ChannelResiduals) -> dict[str, object]:
         'std': scale * row.std,
         'stated_std': scale * row.stated_std,
         'test_ratio': row.test_ratio,
-        'beyond': row.test_ratio > BEYOND,
+        'beyond': row.test_ratio > LARGEST_TEST_RATIO,
         'white': 'too few' if white is None else f'{white.p_value:.2g}',
         'coloured': white is not None and not white.white,
     }

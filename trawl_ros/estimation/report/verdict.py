@@ -14,16 +14,16 @@ from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.records.coefficients import COEFFICIENTS
 
-BEYOND = 1.0
+LARGEST_TEST_RATIO = 1.0
 """Test ratio above which residuals are beyond what the stated errors allow."""
 
-GRAVE = ('wrong unit', 'implausible', 'speed over ground')
+GRAVE_REASONS = ('wrong unit', 'implausible', 'speed over ground')
 """Reasons of a rejection that one should not have to look for."""
 
-WIDENED = 1.2
+NOTABLE_MISFIT = 1.2
 """Misfit from where it is worth a word."""
 
-NOISY = 2.0
+NOTABLE_NOISE = 2.0
 """Scatter over what is stated from where it is worth a word."""
 
 
@@ -117,19 +117,21 @@ def _knowledge(report: Report) -> tuple[str, ...]:
 def _concerns(report: Report) -> tuple[str, ...]:
     estimate = report.estimate
     concerns = [
-        f'Refused, {reason}: {report.found[reason]}.' for reason in GRAVE if reason in report.found
+        f'Refused, {reason}: {report.found[reason]}.'
+        for reason in GRAVE_REASONS
+        if reason in report.found
     ]
     if not estimate.converged:
         concerns.append(f'The iteration has not come to rest: {estimate.reason}.')
     if estimate.active_bounds:
         bounds = '; '.join(estimate.active_bounds)
         concerns.append(f'On a bound, so that its interval is worth little: {bounds}.')
-    if estimate.birge_ratio > WIDENED:
+    if estimate.birge_ratio > NOTABLE_MISFIT:
         concerns.append(
             'The readings differ from the model by more than all known errors explain; intervals '
             f'are widened {estimate.birge_ratio:.1f} times for it.'
         )
-    if beyond := [_ratio(row) for row in report.residuals if row.test_ratio > BEYOND]:
+    if beyond := [_ratio(row) for row in report.residuals if row.test_ratio > LARGEST_TEST_RATIO]:
         concerns.append(
             f'Residuals are beyond what the stated errors allow in {", ".join(beyond)}.'
         )
@@ -142,7 +144,7 @@ def _concerns(report: Report) -> tuple[str, ...]:
     if noisy := [
         f'{group.replace("_", " ")} ({scale:.1f} times)'
         for group, scale in estimate.noise_scales.items()
-        if scale > NOISY
+        if scale > NOTABLE_NOISE
     ]:
         concerns.append(f'Readings scatter far more than stated in {", ".join(noisy)}.')
     if report.held_out.by == 'state':

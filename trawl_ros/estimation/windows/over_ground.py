@@ -26,10 +26,10 @@ LEAST_PAIRS = 10
 ALONG = 0.05
 """Speed (m/s) along the heading that errors of log and GPS make by themselves."""
 
-SEEN = 0.10
+SEEN_CURRENT_M_S = 0.10
 """Current (m/s) along the heading with which a log is proven to see the water."""
 
-TELLING = 0.15
+CURRENT_DIFFERENCE_M_S = 0.15
 """Difference (m/s) of two currents that is none of errors and leeway."""
 
 COPY, SCATTER = 0.008, 0.015
@@ -103,12 +103,12 @@ class OverGround:
         where = 'speed (vessel/velocity_water) is speed over ground'
         if track.copied:
             self._found = f'{where}: it follows vessel/velocity_ground reading by reading'
-        elif abs(track.along) > SEEN:
+        elif abs(track.along) > SEEN_CURRENT_M_S:
             self._sees, self._found = True, None
         elif abs(track.along) < ALONG and not self._sees:
             for other in self._blind:
                 apart = float(np.hypot(*(track.current - other.current)))
-                if apart > TELLING:
+                if apart > CURRENT_DIFFERENCE_M_S:
                     self._found = (
                         f'{where}: on two headings it leaves no current along the ship, and '
                         f'across her {other.across:.2f} and {track.across:.2f} m/s'

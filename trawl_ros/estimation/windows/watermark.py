@@ -7,7 +7,7 @@ from dataclasses import dataclass
 NANO = 1_000_000_000
 
 PAUSE_NS = 10 * NANO
-"""A silence (ns) of the winches after which all channels are waited for anew."""
+"""A silence (ns) of the winches after which all channels are waited for again."""
 
 
 @dataclass

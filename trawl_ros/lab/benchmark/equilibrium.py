@@ -74,7 +74,7 @@ def measure(quick: bool) -> Findings:
             f'{size}; median over {len(CHANGES)} changes of warp length (±20, ±100 m) and speed '
             f'(±0.05 m/s), {1e3 * min(warm):.0f} to {1e3 * max(warm):.0f} ms; '
             f'{min(counts)} to {max(counts)} iterations, {kernels}; bars that become slack '
-            'or taut on the way ask for derivatives and factorisation anew',
+            'or taut on the way ask for derivatives and factorisation again',
         ),
         MeasuredValue(
             'the same, warm, with the derivatives by all parameters',

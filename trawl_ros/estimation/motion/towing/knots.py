@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of inputs along a tow: hat functions on equal knots, with their covariance.
 
-A log is wrong anew with each reading, and the gear feels its speed in all channels at once. So the
+A log errs differently with each reading, and the gear feels its speed in all channels at once. The
 course of that error is estimated along: its values at the knots are parameters, whose covariance
 before the fit is that of a least-squares fit of the knots to the log's readings, and of a slow
 error beside. A counter is wrong by another amount after each time that its winch has run: a

@@ -33,7 +33,7 @@ from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.stepper import StepFailed
 
-UNSTABLE = 1e6
+UNSTABLE_DERIVATIVE = 1e6
 """Derivative of a mean by a coefficient, in noise of the mean, above which motion is unstable."""
 
 BY_SENSOR = 'a board has fallen, by its sensor'
@@ -225,7 +225,9 @@ class TowLineariser:
         if moving.surfaced:
             raise NotPredicted('the gear of the model breaks the surface')
         means = self._parts(moving, moving.average(instants, weights, begin))
-        if np.any(np.abs(means.by['coefficients']) > UNSTABLE * tow.noise[stretch][:, None]):
+        if np.any(
+            np.abs(means.by['coefficients']) > UNSTABLE_DERIVATIVE * tow.noise[stretch][:, None]
+        ):
             self._fail('the motion of the model is unstable')
         return means
 

@@ -38,7 +38,7 @@ SERIES = ('67.0', '63.0', '65.0', '66.0')
 QUANTITIES = {'spread': ('m', 1.0), 'height': ('m', 1.0), 'tension': ('kN', 1e-3)}
 """Display unit of each quantity, and its number in one SI unit."""
 
-NEIGHBOURS = 3
+NEAR_STATES = 3
 """Number of known states to start from if a state is not found cold."""
 
 FLOOR_FRICTION = 0.5
@@ -99,7 +99,7 @@ def _led(gear: GearRecord, missing: Compared, known: Sequence[Compared]) -> Comp
             + abs(one.state.pulling_points / state.pulling_points - 1.0)
         )
     )
-    for one in alike[:NEIGHBOURS]:
+    for one in alike[:NEAR_STATES]:
         assert one.net is not None
         try:
             return Compared(state, led_to(gear, state, one.state, one.net))
