@@ -1,6 +1,6 @@
 """The page of docs/interface.md, drawn from the registry and the parameters of the nodes.
 
-`python test/interface/page.py` draws it anew.
+`python test/interface/page.py` draws it again.
 """
 
 from collections.abc import Iterable
@@ -66,7 +66,7 @@ CONVENTIONS = {
     'geometry_msgs/msg/PoseWithCovarianceStamped': (
         'm; covariance m², rad²', 'no message; variance 1e6 where not measured',
     ),
-    'geometry_msgs/msg/Vector3Stamped': ('rad or m, as said', 'NaN'),
+    'geometry_msgs/msg/Vector3Stamped': ('rad, m or N, as said', 'NaN'),
     'geometry_msgs/msg/WrenchStamped': ('N, N m', 'never missing'),
     'geometry_msgs/msg/PolygonStamped': ('m', 'never missing'),
     'geometry_msgs/msg/PoseStamped': ('m, quaternion', 'never missing'),

@@ -190,8 +190,8 @@ TETHER = (
     ),
     *(
         Topic(
-            f'tether/{side}/force', 'geometry_msgs/msg/Vector3Stamped', VESSEL, 10.0,
-            f"Force of the {side} warp on its block, N, in the vehicle's axes.", _TETHERED,
+            f'tether/{side}/force', 'geometry_msgs/msg/Vector3Stamped', MAP, 10.0,
+            f'Force of the {side} warp on its block, N, in the frame of the odometry.', _TETHERED,
         )
         for side in SIDES
     ),
