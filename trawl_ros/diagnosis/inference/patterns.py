@@ -15,13 +15,13 @@ from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.records.channels import MEASURED
 
 VARIABLES = ('warp length', 'warp length²', 'speed', 'warp length × speed', 'time in tow', 'course')
-"""Variables, centred and scaled, to which a channel's residuals may be proportional."""
+"""Variables to which a channel's residuals may be proportional; `_variables` scales them."""
 
 SHAPES = ('throughout', *VARIABLES)
 """All shapes of a pattern; ``throughout`` is the constant one."""
 
 MIN_SPREAD = 1e-9
-"""Spread (SI or h) up to which a variable counts as constant; less is rounding."""
+"""Std or range (m, m/s, h or no unit) up to which a variable counts as constant."""
 
 
 @dataclass(frozen=True)

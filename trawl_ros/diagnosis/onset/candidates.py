@@ -29,7 +29,7 @@ GROWTH_UNIT_ENDING = 'per h'
 class AtOneHour(Effect):
     """An effect one hour after its onset.
 
-    Growing effects are linear in time, so their response at one hour gives that at any time.
+    Growing effects are treated as linear in time. So the response at one hour gives all others.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class CandidateTable:
     effects
         Effects, in the order of their columns.
     candidates
-        Candidates that may be named. A drift effect gives two: its rate and its offset.
+        Candidates that may be named. A drift of channels gives two: its rate and its offset.
     """
 
     effects: tuple[Effect, ...]

@@ -163,7 +163,7 @@ class Designer:
     def fitted(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
         """Return the posterior covariance (12, 12) that the estimator itself computes.
 
-        It is slower than `covariance` and serves as a check of it.
+        It agrees with `covariance`, which is faster and is used in the search.
         """
         problem = self.problem
         windows = [

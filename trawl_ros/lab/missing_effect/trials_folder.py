@@ -3,7 +3,8 @@
 """Writer and reader of a folder of blind trials; the key is a file next to the folder.
 
 The folder holds ``trials.json`` and a folder per trial. Methods read them and write a file of
-answers. The key holds the hidden causes; ``trials.json`` has its SHA-256, so that a later change of the key is noticed.
+answers. The key holds the hidden causes. ``trials.json`` has the key's SHA-256, so that a later
+change of the key is noticed.
 """
 
 from collections.abc import Sequence
