@@ -79,7 +79,7 @@ def command(
 
 def _print(diagnosis: Diagnosis, out: Path) -> None:
     # Imported here: figures load slowly, and a refused command does not need them.
-    from trawl_ros.diagnosis.report.writing import MODEL
+    from trawl_ros.diagnosis.report.writing import MODEL_FILE
 
     console = Console(highlight=False, soft_wrap=True)
     console.print(f'{diagnosis.verdict}. {headline(diagnosis)}', style='bold', markup=False)
@@ -88,4 +88,4 @@ def _print(diagnosis: Diagnosis, out: Path) -> None:
     console.print(f'What to do now: {what_to_do(diagnosis)}', markup=False)
     console.print(f'Report: {out / "report.html"}', markup=False)
     if diagnosis.repair is not None:
-        console.print(f'Gear with this effect: {out / MODEL}', markup=False)
+        console.print(f'Gear with this effect: {out / MODEL_FILE}', markup=False)

@@ -17,7 +17,7 @@ from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.fit.fitted_estimate import tow_biases
 from trawl_ros.estimation.fit.linearised import linearise
-from trawl_ros.estimation.fit.nuisance import ALIKE, ROUNDS, reweighted
+from trawl_ros.estimation.fit.nuisance import MAX_ELIMINATIONS, WEIGHT_TOLERANCE, reweighted
 from trawl_ros.records.channels import INPUTS
 
 NORMAL = 1e9
@@ -83,8 +83,8 @@ def test_extrapolated_weights_are_nearer_to_their_end_than_those_of_plain_reweig
         plain = replace(robust, weights=reweighted(plain.elimination, 0.5))
         costs.append(plain.cost)
     end = costs[-1]
-    assert abs(costs[ROUNDS] - end) > 1e-7 * end
-    assert abs(robust.cost - end) < 0.5 * abs(costs[ROUNDS] - end)
+    assert abs(costs[MAX_ELIMINATIONS] - end) > 1e-7 * end
+    assert abs(robust.cost - end) < 0.5 * abs(costs[MAX_ELIMINATIONS] - end)
 
 
 def test_the_cost_is_half_the_squared_residual_in_that_covariance(fit, dense):
@@ -122,7 +122,7 @@ def test_a_wild_reading_loses_weight_and_its_neighbours_do_not(fit):
     for tow, weights in zip(
         robust.elimination.tows, reweighted(robust.elimination, robust.options.huber), strict=True
     ):
-        np.testing.assert_allclose(tow.weights, weights, atol=2.0 * ALIKE)
+        np.testing.assert_allclose(tow.weights, weights, atol=2.0 * WEIGHT_TOLERANCE)
 
 
 def test_what_an_instrument_reads_too_high_is_found_per_tow(sea, model, prior):

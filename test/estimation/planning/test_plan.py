@@ -10,8 +10,8 @@ from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.planning.duration import (
-    Ability,
     Timetable,
+    VesselLimits,
     arranged,
     holding_time,
     minutes_of,
@@ -26,7 +26,7 @@ from trawl_ros.estimation.planning.information import (
 )
 from trawl_ros.estimation.planning.limits import limits_of
 from trawl_ros.estimation.planning.plan import TrialPlan, plan_for
-from trawl_ros.estimation.planning.search import MOST_VISITS, Designer, shortfall
+from trawl_ros.estimation.planning.search import MAX_VISITS_PER_STATE, Designer, shortfall
 from trawl_ros.estimation.planning.states import Explorer, Limits, Manoeuvre
 from trawl_ros.estimation.planning.windows import imagined_windows
 from trawl_ros.estimation.windows.records import WindowOptions
@@ -40,7 +40,7 @@ FEW = Limits(lengths=(200.0, 500.0), speeds=(2.1, 2.5), shorter=(5.0,))
 SWEEP_HOURS = 2.0
 """Time for the sweep out and back; gear on this much warp settles for half an hour and more."""
 
-ABILITY = Ability(0.4, 0.1, 0.02, least_speed=1.9, most_speed=2.5)
+LIMITS = VesselLimits(0.4, 0.1, 0.02, least_speed=1.9, most_speed=2.5)
 
 
 @pytest.fixture(scope='module')
@@ -57,7 +57,7 @@ def test_the_time_is_used_and_not_overdrawn(plan):
     assert plan.trial.minutes == sum(leg.total_minutes for leg in plan.trial.legs)
     shortest = min(leg.total_minutes for leg in plan.trial.legs)
     assert 60.0 * SWEEP_HOURS - 2 * shortest < plan.trial.minutes <= 60.0 * SWEEP_HOURS
-    assert max(map(plan.trial.manoeuvres.count, plan.trial.manoeuvres)) <= MOST_VISITS
+    assert max(map(plan.trial.manoeuvres.count, plan.trial.manoeuvres)) <= MAX_VISITS_PER_STATE
 
 
 def test_every_leg_can_be_towed_with_the_board_as_believed_and_as_filed(plan, record):
@@ -81,7 +81,7 @@ def test_it_tells_more_than_the_sweep_in_the_same_time(plan):
 
 
 def test_no_other_manoeuvre_in_any_place_would_tell_more(plan):
-    designer = Designer(plan.question, plan.choice.candidates)
+    designer = Designer(plan.problem, plan.choice.candidates)
     done = plan.trial.manoeuvres
     best = designer.shortfall(done)
     for place in range(len(done)):
@@ -92,29 +92,29 @@ def test_no_other_manoeuvre_in_any_place_would_tell_more(plan):
 
 
 def test_the_same_question_gets_the_same_plan(plan):
-    again = Designer(plan.question, plan.choice.candidates).best()
+    again = Designer(plan.problem, plan.choice.candidates).best()
     assert again == plan.trial.legs
 
 
 def test_planner_and_estimator_agree_on_what_windows_teach(plan):
-    question = plan.question
-    designer = Designer(question, plan.choice.candidates)
+    problem = plan.problem
+    designer = Designer(problem, plan.choice.candidates)
     done = plan.trial.manoeuvres
     ours, fits = designer.covariance(done), designer.fitted(done)
     size = np.sqrt(np.outer(np.diag(fits), np.diag(fits)))
     assert np.max(np.abs(ours - fits) / size) < 1e-8
-    assert plan.trial.known.sd == pytest.approx(question.quantities(fits).sd, rel=1e-12)
+    assert plan.trial.known.sd == pytest.approx(problem.quantities(fits).sd, rel=1e-12)
 
 
 def test_what_limits_is_named_and_its_remedy_helps(plan):
-    question = replace(plan.question, minutes=20.0)
-    designer = Designer(question, plan.choice.candidates)
+    problem = replace(plan.problem, minutes=20.0)
+    designer = Designer(problem, plan.choice.candidates)
     short = [leg.manoeuvre for leg in designer.best()]
     known = designer.quantities(short)
     named = limits_of(designer, short, known)
     assert len(named) == (~known.well_known).sum() > 0
-    endless = question.quantities(
-        covariance_from(designer.information(short, 1e4), question.prior)
+    endless = problem.quantities(
+        covariance_from(designer.information(short, 1e4), problem.prior)
     ).well_known
     for name, why in named.items():
         assert (why == 'noise') == endless[QUANTITIES.index(name)]
@@ -141,17 +141,17 @@ def test_too_little_time_and_nothing_to_tow_are_said(record):
 
 def test_windows_of_one_state_share_what_stays_wrong(plan):
     """Twice as many windows of a state tell less than twice as many states."""
-    question = plan.question
+    problem = plan.problem
     candidate = plan.choice.candidates[0]
-    before = information_before(question.prior, question.estimator)
+    before = information_before(problem.prior, problem.estimator)
 
     def sd(number: int) -> np.ndarray:
-        parts = imagined_windows(candidate, question.coefficients, state=0, number=number)
-        taught = information_of(parts, question.prior, question.estimator)
-        return np.sqrt(np.diag(covariance_from(before + taught, question.prior)))
+        parts = imagined_windows(candidate, problem.coefficients, state=0, number=number)
+        taught = information_of(parts, problem.prior, problem.estimator)
+        return np.sqrt(np.diag(covariance_from(before + taught, problem.prior)))
 
-    parts = imagined_windows(candidate, question.coefficients, state=0, number=2)
-    fits = fitted_covariance(parts, question.coefficients, question.prior, EstimatorOptions())
+    parts = imagined_windows(candidate, problem.coefficients, state=0, number=2)
+    fits = fitted_covariance(parts, problem.coefficients, problem.prior, EstimatorOptions())
     assert sd(2) == pytest.approx(np.sqrt(np.diag(fits)), rel=1e-8)
     assert np.all(sd(4) <= sd(2))
     assert np.all(sd(400) > 0.1 * sd(2))
@@ -173,22 +173,22 @@ def test_the_winch_takes_as_long_as_the_simulated_one():
         winch, seconds = Winch(200.0, 0.0), 0.0
         while winch.length != 200.0 + metres or winch.speed:
             winch, seconds = winch.advanced(Limit, 200.0 + metres, 0.1), seconds + 0.1
-        assert winch_time(ABILITY, metres) == pytest.approx(seconds, abs=0.7)
+        assert winch_time(LIMITS, metres) == pytest.approx(seconds, abs=0.7)
 
 
 def test_warp_runs_out_at_a_speed_that_keeps_the_boards_up(plan):
-    options, ability = WindowOptions(), plan.question.ability
-    timetable = Timetable(ability, options, plan.choice.candidates)
+    options, vessel = WindowOptions(), plan.problem.vessel
+    timetable = Timetable(vessel, options, plan.choice.candidates)
     short, longer = Manoeuvre(200.0, 200.0, 2.1), Manoeuvre(500.0, 500.0, 2.1)
     out = timetable.legs([short, longer])[1]
-    faster = ability.veering_speed - 2.1
+    faster = vessel.veering_speed - 2.1
     assert faster == pytest.approx(min(0.4, 2.5 - 2.1))
-    assert out.veering_speed == pytest.approx(ability.veering_speed)
-    assert 60.0 * out.veering_minutes >= winch_time(ability, 300.0) + faster / 0.02
+    assert out.veering_speed == pytest.approx(vessel.veering_speed)
+    assert 60.0 * out.veering_minutes >= winch_time(vessel, 300.0) + faster / 0.02
     assert 60.0 * out.minutes >= holding_time(longer, options) + faster / 0.02
     back = timetable.legs([longer, short])[1]
     assert back.veering_minutes == 0.0
-    assert 60.0 * back.minutes >= holding_time(short, options) + winch_time(ability, 300.0)
+    assert 60.0 * back.minutes >= holding_time(short, options) + winch_time(vessel, 300.0)
     assert minutes_of([out, back]) == out.minutes + out.veering_minutes + back.minutes
 
 

@@ -1,6 +1,9 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Patterns of a channel's residuals, whatever their cause: a few simple shapes."""
+"""Empirical patterns of a channel's residuals: a constant, or proportional to a variable.
+
+They describe residuals without naming a cause, so that an unknown cause can be recognised.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,14 +15,18 @@ from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.records.channels import MEASURED
 
 VARIABLES = ('warp length', 'warp length²', 'speed', 'warp length × speed', 'time in tow', 'course')
-"""Variables that a channel's residuals may follow, as well as a constant."""
+"""Variables to which a channel's residuals may be proportional; `_variables` scales them."""
 
 SHAPES = ('throughout', *VARIABLES)
+"""All shapes of a pattern; ``throughout`` is the constant one."""
+
+MIN_SPREAD = 1e-9
+"""Std or range (m, m/s, h or no unit) up to which a variable counts as constant."""
 
 
 @dataclass(frozen=True)
 class ResidualPattern:
-    """Pattern: residuals of one channel that follow one of `SHAPES`."""
+    """Residuals of one channel that follow one of `SHAPES`."""
 
     channel: str
     shape: str
@@ -28,33 +35,46 @@ class ResidualPattern:
 def patterns(
     linearised: Sequence[Linearised],
 ) -> tuple[tuple[ResidualPattern, ...], list[FloatArray]]:
-    """All patterns that are observable in the windows.
+    """Return all patterns that are observable in the windows.
+
+    A pattern is observable if its channel is measured and its variable differs between windows.
+
+    Parameters
+    ----------
+    linearised
+        Linearised windows of all tows.
 
     Returns
     -------
     tuple
-        The patterns; those of one channel stand together.
+        Patterns, ordered by channel and then by shape.
     list
-        For each window an array (channels of the window, patterns), each column of size 1 in std
-        of the readings.
+        For each window an array (channels of the window, patterns): the change (SI) of each
+        reading by a pattern of size 1. It is the variable times the std of the reading.
     """
     variables = _variables(linearised)
-    varying = [i for i in range(len(SHAPES)) if i == 0 or np.ptp(variables[:, i]) > 1e-9]
+    varying = [i for i in range(len(SHAPES)) if i == 0 or np.ptp(variables[:, i]) > MIN_SPREAD]
     present = [name for name in MEASURED if any(name in linear.channels for linear in linearised)]
     observable = tuple(ResidualPattern(name, SHAPES[i]) for name in present for i in varying)
     columns = []
     for row, linear in enumerate(linearised):
-        own = np.zeros((len(linear.channels), len(observable)))
+        change = np.zeros((len(linear.channels), len(observable)))
+        # Std of a reading if the window is the only one in its steady state.
         std = linear.std(1)
         for channel, name in enumerate(linear.channels):
             first = present.index(name) * len(varying)
-            own[channel, first : first + len(varying)] = std[channel] * variables[row, varying]
-        columns.append(own)
+            change[channel, first : first + len(varying)] = std[channel] * variables[row, varying]
+        columns.append(change)
     return observable, columns
 
 
 def _variables(linearised: Sequence[Linearised]) -> FloatArray:
-    """Shapes (windows, shapes), centred and scaled."""
+    """Return the values (windows, shapes) of `SHAPES`, without unit.
+
+    Length, its square, speed and time are centred and scaled to unit std. The course is ±1, the
+    sense in which the track is towed.
+    """
+    # Mean of both warps.
     length = np.array([0.5 * linear.inputs[:2].sum() for linear in linearised])
     speed = np.array([linear.inputs[2] for linear in linearised])
     hours = np.array([linear.window.hours for linear in linearised])
@@ -66,5 +86,6 @@ def _variables(linearised: Sequence[Linearised]) -> FloatArray:
 
 
 def _standard(values: FloatArray) -> FloatArray:
+    """Return values with mean 0 and std 1; all 0 if they are constant."""
     spread = float(values.std())
-    return (values - values.mean()) / spread if spread > 1e-9 else np.zeros(len(values))
+    return (values - values.mean()) / spread if spread > MIN_SPREAD else np.zeros(len(values))

@@ -1,6 +1,10 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Drifts of instruments: what goes with time may be an instrument as well as the gear."""
+"""Drifts of instruments, the alternative to a gear that changes with time.
+
+The error of a drifting instrument, measured minus true, is e(t) = rate · t + first, with t in hours
+since the tow began.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,23 +17,31 @@ from trawl_ros.effects.empirical import usual_error
 from trawl_ros.records.channels import CHANNELS, MEASURED
 
 MAX_USUAL_SIZES = 20.0
-"""Largest possible drift, in usual ones."""
+"""Bound of rate (per h) and initial error, as a multiple of the instrument's usual error."""
 
 SIDES = ('port', 'starboard')
+
+USUAL_COUNTER_ERROR_M = 5.0
+"""Usual drift of the winch counters in an hour, m; assumed."""
+
+USUAL_LOG_ERROR_M_S = 0.05
+"""Usual drift of the log in an hour, m/s; assumed."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drift(Effect):
-    """Drift of an instrument through each tow, from an error that it begins with.
+    """Linear drift of an instrument through each tow, from an initial error.
+
+    The values of its two parameters are the ``rate`` (unit per h) and the ``first`` error (unit).
 
     Attributes
     ----------
     instrument_in_words
-        Of which it is.
+        Instrument, in words of a report.
     channels
-        Measured channels that drift together.
+        Measured channels with this error, all of the same unit.
     inputs
-        Drift of both warp lengths (m) and the speed (m/s) per unit of the size.
+        Error of port and starboard warp length (m) and of the speed (m/s), per unit of e(t).
     """
 
     instrument_in_words: str
@@ -37,24 +49,25 @@ class Drift(Effect):
     inputs: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
-        """Inputs without what the instruments show too much."""
+        """Return true inputs (3,): the measured ones minus the error."""
         true: FloatArray = inputs - _error(values, at) * np.array(self.inputs)
         return true
 
     def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
-        """Readings with what the channels show too much."""
+        """Return readings with the error added to those of ``channels``."""
         error = _error(values, at)
         return readings | {name: readings[name] + error for name in self.channels}
 
 
 def _error(values: FloatArray, at: Situation) -> float:
+    """Return the error e(t) for the values (2,), rate and first."""
     rate, first = values
     error: float = rate * at.hours + first
     return error
 
 
 def drifts() -> Iterator[Drift]:
-    """Yield drifts of each measured channel, of both sides together, of counters and log."""
+    """Yield drifts of each measured channel, of each pair of sides, of the counters and the log."""
     paired = [name for name in MEASURED if name.startswith(SIDES[0])]
     for name in MEASURED:
         yield _of_channels(name, f'readings of {name.replace("_", " ")}', (name,))
@@ -63,11 +76,12 @@ def drifts() -> Iterator[Drift]:
         both = tuple(f'{side}_{quantity}' for side in SIDES)
         words = quantity.replace('_', ' ')
         yield _of_channels(f'both_{quantity}', f'readings of {words} on both sides', both)
-    yield _drift('counters', 'winch counters', 'm', 5.0, inputs=(1.0, 1.0, 0.0))
-    yield _drift('log', 'readings of the log', 'm/s', 0.05, inputs=(0, 0, 1.0))
+    yield _drift('counters', 'winch counters', 'm', USUAL_COUNTER_ERROR_M, inputs=(1.0, 1.0, 0.0))
+    yield _drift('log', 'readings of the log', 'm/s', USUAL_LOG_ERROR_M_S, inputs=(0, 0, 1.0))
 
 
 def _of_channels(name: str, words: str, channels: tuple[str, ...]) -> Drift:
+    """Return the common drift of channels of the same quantity."""
     first = channels[0]
     unit = CHANNELS[first].unit
     return _drift(name, words, unit, usual_error(first), channels=channels)
@@ -82,13 +96,14 @@ def _drift(
     channels: tuple[str, ...] = (),
     inputs: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> Drift:
-    far = MAX_USUAL_SIZES * usual
+    """Return a drift whose rate (``unit`` per h) and initial error have the prior std ``usual``."""
+    bound = MAX_USUAL_SIZES * usual
     return Drift(
         name=f'{name}_drift',
         sentence=f'{words.capitalize()} drift through each tow.',
         parameters=(
-            Parameter('rate', f'{unit} per h', 0.0, -far, far, usual),
-            Parameter('first', unit, 0.0, -far, far, usual),
+            Parameter('rate', f'{unit} per h', 0.0, -bound, bound, usual),
+            Parameter('first', unit, 0.0, -bound, bound, usual),
         ),
         excited_by='time in the tow',
         direct='Tow one state at the beginning of a tow and again at its end: what drifts then '

@@ -1,6 +1,9 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Candidates for what begins during a tow: the catalogue's effects, and patterns of channels."""
+"""Candidate causes of a change during a tow: effects of the catalogue, and faults of channels.
+
+Each candidate has one or more values, which are the columns (p in all) of the table.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,46 +19,54 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.channels import MEASURED
 
 WATCHED = tuple(name for name in MEASURED if name not in STEADY_ONLY)
-"""Channels that are watched."""
+"""Channels that are watched for a change."""
 
-GROWING = 'per h'
-"""Unit of values that an effect grows with from its onset on."""
+GROWTH_UNIT_ENDING = 'per h'
+"""End of the unit of a growth rate: such an effect grows linearly from its onset on."""
 
 
 @dataclass(frozen=True)
 class AtOneHour(Effect):
-    """Effect as it is after one hour: by that its growth is known at any time."""
+    """An effect one hour after its onset.
+
+    Growing effects are treated as linear in time. So the response at one hour gives all others.
+
+    Attributes
+    ----------
+    of
+        The effect itself.
+    """
 
     of: Effect | None = None
 
     def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
-        """Apply to inputs at one hour."""
+        """Apply the effect to inputs (3,), one hour after onset."""
         assert self.of is not None
         return self.of.apply_to_inputs(values, inputs, replace(at, hours=1.0))
 
     def gear(self, values: FloatArray, model: GearModel, at: Situation) -> GearModel:
-        """Gear model at one hour."""
+        """Apply the effect to the gear model, one hour after onset."""
         assert self.of is not None
         return self.of.gear(values, model, replace(at, hours=1.0))
 
     def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
-        """Apply to sensors at one hour."""
+        """Apply the effect to sensor readings, one hour after onset."""
         assert self.of is not None
         return self.of.apply_to_sensors(values, readings, replace(at, hours=1.0))
 
 
 @dataclass(frozen=True)
 class OnsetCandidate:
-    """Candidate for what has begun: columns of the signatures that belong together.
+    """Candidate cause of a change: an effect or a channel fault, with the columns of its values.
 
     Attributes
     ----------
     name
-        Of the effect, or of the pattern.
+        Name of the effect or of the channel fault.
     words
-        Meaning of the name.
+        Description for reports.
     columns
-        Places of its values among those of all candidates.
+        Indices of its values among the p values of the table.
     """
 
     name: str
@@ -65,14 +76,14 @@ class OnsetCandidate:
 
 @dataclass(frozen=True)
 class CandidateTable:
-    """Candidates with the effects by whose p values they are told.
+    """All candidates, and the effects whose p values are the columns.
 
     Attributes
     ----------
     effects
-        Those whose values the columns are, one behind the other.
+        Effects, in the order of their columns.
     candidates
-        Effects and patterns that may be named.
+        Candidates that may be named. A drift of channels gives two: its rate and its offset.
     """
 
     effects: tuple[Effect, ...]
@@ -80,64 +91,75 @@ class CandidateTable:
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """Parameters (p) of the columns."""
-        return tuple(own for effect in self.effects for own in effect.parameters)
+        """Parameters of the p columns."""
+        return tuple(parameter for effect in self.effects for parameter in effect.parameters)
 
     @property
     def scale(self) -> FloatArray:
-        """Size (p,) to which a value may go, a std about neutral."""
-        return WIDE * np.array([own.std for own in self.parameters])
+        """Prior std (p,) of the values about neutral: `WIDE` times their common size."""
+        return WIDE * np.array([parameter.std for parameter in self.parameters])
 
     @property
     def reach(self) -> tuple[FloatArray, FloatArray]:
-        """Smallest and largest departure (p,) from neutral."""
-        own = self.parameters
+        """Bounds of the values, low and high, both (p,), as departures from neutral."""
         return (
-            np.array([one.low - one.neutral for one in own]),
-            np.array([one.high - one.neutral for one in own]),
+            np.array([parameter.low - parameter.neutral for parameter in self.parameters]),
+            np.array([parameter.high - parameter.neutral for parameter in self.parameters]),
         )
 
     @property
     def growing(self) -> BoolArray:
-        """Flags (p,) of the values with which an effect grows from its onset on."""
-        return np.array([own.unit.endswith(GROWING) for own in self.parameters], np.bool_)
+        """Flags (p,) of the growth rates among the values."""
+        return np.array([_is_growth_rate(parameter) for parameter in self.parameters], np.bool_)
 
     def at_one_hour(self) -> tuple[Effect, ...]:
-        """Effects, those that grow as they are after one hour."""
+        """Return the effects, growing ones as they are one hour after their onset."""
         return tuple(map(_at_one_hour, self.effects))
 
 
 def candidate_table(effects: Mapping[str, Effect] | None = None) -> CandidateTable:
-    """Candidates of a catalogue, by default the one that there is, and of all channels.
+    """Return the candidates from a catalogue of effects and from the faults of all channels.
 
-    Of each channel and of both sides together there is an offset and a drift, of counters and log
-    a drift: their offsets are effects of the catalogue.
+    Each watched channel, and each pair of port and starboard, may have an offset or a drift. Warp
+    counters and log have only a drift here, because their offsets are effects of the catalogue.
+
+    Parameters
+    ----------
+    effects
+        Effects by name; the catalogue if None. Those without parameters are left out.
     """
     known = catalogue() if effects is None else effects
-    whole = (effect for effect in known.values() if effect.parameters)
-    patterns = [drift for drift in drifts() if not set(drift.channels) & set(STEADY_ONLY)]
-    every: Sequence[Effect] = (*whole, *patterns)
-    return CandidateTable(tuple(every), tuple(_candidates(every)))
+    with_parameters = (effect for effect in known.values() if effect.parameters)
+    watched_drifts = [drift for drift in drifts() if not set(drift.channels) & set(STEADY_ONLY)]
+    together: Sequence[Effect] = (*with_parameters, *watched_drifts)
+    return CandidateTable(tuple(together), tuple(_candidates(together)))
 
 
 def _candidates(effects: Iterable[Effect]) -> Iterable[OnsetCandidate]:
+    """Yield candidates with the columns of their values, counted through all effects."""
     first = 0
     for effect in effects:
         number = len(effect.parameters)
         if isinstance(effect, Drift):
+            # The values of a drift are its rate and the error at its beginning, an offset.
             words = effect.instrument_in_words
             yield OnsetCandidate(effect.name, f'{words} that drift', (first,))
             if effect.channels:
                 name = f'{effect.name.removesuffix("_drift")}_offset'
                 yield OnsetCandidate(name, f'{words} that are wrong', (first + 1,))
         else:
-            own = tuple(range(first, first + number))
-            yield OnsetCandidate(effect.name, effect.sentence.rstrip('.'), own)
+            columns = tuple(range(first, first + number))
+            yield OnsetCandidate(effect.name, effect.sentence.rstrip('.'), columns)
         first += number
 
 
+def _is_growth_rate(parameter: Parameter) -> bool:
+    return parameter.unit.endswith(GROWTH_UNIT_ENDING)
+
+
 def _at_one_hour(effect: Effect) -> Effect:
-    if not any(own.unit.endswith(GROWING) for own in effect.parameters):
+    """Return a growing effect as it is one hour after its onset, and others unchanged."""
+    if not any(map(_is_growth_rate, effect.parameters)):
         return effect
     same = {key: getattr(effect, key) for key in Effect.__dataclass_fields__}
     return AtOneHour(**same, of=effect)

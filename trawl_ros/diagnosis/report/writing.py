@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Files of a diagnosis."""
+"""Writer of the files of a diagnosis: JSON, reports, figures and the repaired gear file."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -18,20 +18,21 @@ from trawl_ros.records.channels import CHANNELS
 from trawl_ros.report.pictures import by_section, draw, embedded
 from trawl_ros.report.rendering import page
 
-MODEL = 'model.yaml'
+MODEL_FILE = 'model.yaml'
+"""Name of the gear file with the effect that was found."""
 
 
 def write_diagnosis(diagnosis: Diagnosis, sources: Sequence[SourceBag], folder: Path) -> None:
-    """Write ``diagnosis.json``, both reports, the figures, and ``model.yaml`` where there is one.
+    """Write ``diagnosis.json``, both reports and the figures, and ``model.yaml`` after a repair.
 
     Parameters
     ----------
     diagnosis
         The diagnosis.
     sources
-        The bags.
+        Bags of the diagnosis.
     folder
-        Made if it does not exist.
+        Folder of the files; it is created if it does not exist.
 
     Raises
     ------
@@ -43,8 +44,9 @@ def write_diagnosis(diagnosis: Diagnosis, sources: Sequence[SourceBag], folder: 
     made_folder(folder)
     write_json(folder / 'diagnosis.json', numbers, indent=2)
     if gear is not None:
-        write_text(folder / MODEL, gear_text(gear))
+        write_text(folder / MODEL_FILE, gear_text(gear))
     sections = by_section(embedded(folder, draw(folder, drawings(diagnosis))))
+    # The template shows these two sections in places of their own.
     lead, began = sections.pop(LEAD, []), sections.pop(BEGAN, [])
     for name in ('report.html', 'report.md'):
         text = page(
@@ -64,7 +66,10 @@ def write_diagnosis(diagnosis: Diagnosis, sources: Sequence[SourceBag], folder: 
 
 
 def _gain(diagnosis: Diagnosis) -> str:
-    """Return how much nearer the cause brings the sensor that is furthest off, in a sentence."""
+    """Return a sentence on how much the named cause reduces the worst sensor's held-out error.
+
+    The worst sensor has the largest ratio of RMS to expected error before the repair.
+    """
     holdout = diagnosis.holdout
     if diagnosis.verdict not in ('NAMED', 'AMBIGUOUS') or holdout is None or holdout.after is None:
         return ''
@@ -78,12 +83,16 @@ def _gain(diagnosis: Diagnosis) -> str:
 
 
 def _error_rows(holdout: HoldoutComparison) -> Iterator[tuple[str, ...]]:
-    """Yield name, and errors on held-out tows in the unit of the field, of each sensor."""
-    repaired, other = (one.rms if one else {} for one in (holdout.after, holdout.placebo))
+    """Yield a row of cells for each sensor, with errors on held-out tows in field units.
+
+    The cells are its name, and the errors as expected, without the cause, with it, and with the
+    best wrong cause (``placebo``).
+    """
+    with_cause, with_placebo = (one.rms if one else {} for one in (holdout.after, holdout.placebo))
     for name, before in holdout.before.rms.items():
         unit, factor = FIELD_UNITS[CHANNELS[name].unit]
         expected = holdout.before.expected[name]
-        errors = expected, before, repaired.get(name), other.get(name)
+        errors = expected, before, with_cause.get(name), with_placebo.get(name)
         space = '' if unit == '°' else ' '
-        cells = ('–' if one is None else f'{factor * one:.2f}{space}{unit}' for one in errors)
+        cells = ('–' if error is None else f'{factor * error:.2f}{space}{unit}' for error in errors)
         yield name.replace('_', ' '), *cells

@@ -1,13 +1,21 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Tows of steady windows as blocks of one least-squares problem, whitened robustly.
+"""Robust elimination of the nuisance parameters from steady windows, tow by tow.
 
-A reading's residual is r = J Δ + M μ + U ν + G δ + ε: the step Δ of the coefficients, the model's
-own error μ, calibration ν of the tow, errors δ of the window's inputs and what it lacks of rest,
-and the reading's own error ε of variance D; δ, ν, μ are normal with unit variance. Windows are
-whitened by V = D/w + G Gᵀ. All tows share Δ and μ. A Huber loss acts, through the weights w, on
-each reading's own error D V⁻¹ (r - U ν - M μ) and not on a mixture, so that one bad sensor is
-weighed down and its neighbours are not.
+The residual r (k,) of a window, measured minus predicted, is r = J Δ + M μ + U ν + G δ + ε with
+
+- Δ (q,): step of the coefficients in prior std, shared by all tows;
+- μ (m,): errors of the model itself, shared by all tows;
+- ν (p,): calibration errors of the instruments, constant through a tow;
+- δ (4,): errors of the window's three inputs, and the gear's remaining motion to equilibrium;
+- ε (k,): the reading's own errors, with diagonal covariance D.
+
+μ, ν and δ are normal with unit variance. Each window is whitened by V = D/w + G Gᵀ. The Huber
+weights w are found by iteratively reweighted least squares. They depend on the most likely own
+errors ε = (D/w) V⁻¹ (r - U ν - M μ), and not on the whitened residual. Whitening mixes the
+channels, so a bad sensor would also lower the weights of good ones.
+
+Letters in shapes: t tows, n windows of a tow, k channels; q, m and p as above.
 """
 
 from collections.abc import Sequence
@@ -20,40 +28,40 @@ from trawl_ros.estimation.fit.error_stack import ErrorStack, stacked
 from trawl_ros.estimation.fit.error_terms import TowErrors
 from trawl_ros.estimation.least_squares.information import Information, Joined, joined, own_values
 
-ROUNDS = 50
-"""Eliminations, the last with the weights that are kept: a guard, not a setting."""
+MAX_ELIMINATIONS = 50
+"""Safeguard on the number of eliminations; the last one uses the final weights."""
 
-ALIKE = 1e-5
-"""Weights that change by less are the last; they err the cost by the square of that."""
+WEIGHT_TOLERANCE = 1e-5
+"""Change of the weights below which they have converged. The error of the cost is of its square."""
 
-STEADY = 0.9
-"""Factor from one step of the weights to the next up to which their end is extrapolated."""
+MAX_STEP_RATIO = 0.9
+"""Ratio of successive steps of the weights up to which their limit is extrapolated."""
 
 
 @dataclass(frozen=True)
 class TowPart:
-    """Contribution of one tow; n windows by k channels, p errors of calibration.
+    """Contribution of one tow; n windows, k channels, p calibration errors.
 
     Attributes
     ----------
     errors : TowErrors
-        Of this tow.
+        Error terms of this tow.
     information : Information
-        On coefficients, the model's errors and calibration, about Δ = 0.
+        Information on Δ, μ and ν, linearised at Δ = 0.
     std : (n, k) array
-        Of the reading's own error, noise scale included.
+        Std of each reading's own error ε, noise scale included, in the channel's unit.
     weights : (n, k) array
-        Huber weights, 1 for a reading within the limit.
+        Huber weights w, 1 for a reading within the limit.
     roots : (n, k, k) array
         Lower Cholesky factors of V.
     own : (n, k) array
-        The readings' own errors, in std.
+        Most likely own errors ε of the readings, in units of ``std``.
     calibration : (p,) array
-        Most likely errors of calibration, in std.
+        Most likely calibration errors ν, in prior std.
     inputs : (n, 4) array
-        Most likely errors of each window's inputs and rest, in std.
+        Most likely δ of each window, in prior std.
     cost : float
-        Huber loss of the readings' own errors and half the squares of δ and ν.
+        Huber loss of ε plus half the squares of δ and ν.
     """
 
     errors: TowErrors
@@ -74,12 +82,11 @@ class NuisanceElimination:
     Attributes
     ----------
     tows : tuple of TowPart
-        In the order of their numbers.
+        One per tow, in the order of the tow numbers.
     joined : Joined
-        Information on coefficients and the model's errors, about Δ = 0; none on the coefficients
-        before the data.
+        Information of all tows on Δ and μ at Δ = 0. The prior of Δ is not included.
     model : (m,) array
-        Most likely errors of the model at Δ = 0, in std.
+        Most likely errors μ of the model at Δ = 0, in prior std.
     """
 
     tows: tuple[TowPart, ...]
@@ -93,10 +100,10 @@ class NuisanceElimination:
 
     @property
     def coefficients(self) -> Joined:
-        """Information (q, q) of the data on the coefficients alone."""
-        every, q = self.joined, len(self.joined.right) - len(self.model)
-        whole = Information(every.matrix, every.right, 0.0, 0.0)
-        return joined([whole], [every.precision], q)
+        """Information (q, q) of the data on the coefficients, with μ eliminated too."""
+        both, q = self.joined, len(self.joined.right) - len(self.model)
+        information = Information(both.matrix, both.right, 0.0, 0.0)
+        return joined([information], [both.precision], q)
 
 
 def eliminate_nuisance(
@@ -107,107 +114,127 @@ def eliminate_nuisance(
     huber: float,
     weights: Sequence[FloatArray] | None = None,
 ) -> NuisanceElimination:
-    """Eliminate all nuisance parameters, robustly.
+    """Eliminate all nuisance parameters with Huber weights on the readings' own errors.
 
     Parameters
     ----------
     tows
-        Errors of the windows, tow by tow.
+        Error terms of the windows, one record per tow.
     scales
         Factor (k,) on the stated noise of each channel.
     residual
-        Measured minus predicted (windows, k), 0 where a window has no such channel.
+        Measured minus predicted (windows, k); 0 where a window lacks the channel.
     jacobian
-        Sensitivities (windows, k, q) to the coefficients in units of their prior's std.
+        Derivatives (windows, k, q) of the predictions by the coefficients, per prior std.
     huber
-        Limit in std from where the loss grows linearly.
+        Own error, in std, above which the loss grows linearly.
     weights
-        Huber weights (n, k) of each tow that are taken as they are; found if None.
+        Fixed Huber weights (n, k) of each tow. If None, they are computed.
     """
     if not tows:
-        none = np.zeros(jacobian.shape[2])
-        return NuisanceElimination((), Joined(np.diag(none), none, none, 0.0), np.zeros(0))
+        no_data = np.zeros(jacobian.shape[2])
+        empty = Joined(np.diag(no_data), no_data, no_data, 0.0)
+        return NuisanceElimination((), empty, np.zeros(0))
     stack = stacked(tows, scales, residual, jacobian)
     if weights is None:
-        every = _robust_weights(stack, tows, huber)
+        padded = _robust_weights(stack, tows, huber)
     else:
-        every = np.ones(stack.std.shape)
-        for place, weight in enumerate(weights):
-            every[place, : len(weight)] = weight
-    return _solved(stack, tows, every, huber)
+        # Tows have different numbers of windows; the padding keeps weight 1.
+        padded = np.ones(stack.std.shape)
+        for tow, weight in enumerate(weights):
+            padded[tow, : len(weight)] = weight
+    return _eliminate_with_weights(stack, tows, padded, huber)
 
 
 def _robust_weights(stack: ErrorStack, tows: Sequence[TowErrors], huber: float) -> FloatArray:
-    """Huber weights (t, n, k) that belong to the readings' own errors with them."""
+    """Find Huber weights (t, n, k) that are consistent with the own errors they lead to.
+
+    This is the fixed point of iteratively reweighted least squares at Δ = 0.
+    """
     m, p = tows[0].model.shape[2], tows[0].calibration.shape[2]
-    known = stack.columns[..., -(m + p + 1) :]
-    weights, before = np.ones(stack.std.shape), None
-    for _ in range(1, ROUNDS):
-        updated = _huber_weights(_own_errors(stack, known, m, weights), huber)
+    columns = stack.columns[..., -(m + p + 1) :]
+    weights, previous_step = np.ones(stack.std.shape), None
+    for _ in range(1, MAX_ELIMINATIONS):
+        updated = _huber_weights(_own_errors(stack, columns, m, weights), huber)
         step = updated - weights
-        if float(np.max(np.abs(step))) < ALIKE:
+        if float(np.max(np.abs(step))) < WEIGHT_TOLERANCE:
             break
-        weights, before = _extrapolated(updated, step, before)
+        weights, previous_step = _extrapolated(updated, step, previous_step)
     return weights
 
 
-def _own_errors(stack: ErrorStack, known: FloatArray, m: int, weights: FloatArray) -> FloatArray:
-    """The readings' own errors (t, n, k), in std, with the most likely ν and μ.
+def _own_errors(stack: ErrorStack, columns: FloatArray, m: int, weights: FloatArray) -> FloatArray:
+    """Return the readings' own errors (t, n, k), in std, at Δ = 0 and the most likely ν and μ.
 
-    The coefficients take no part. ``known`` (t, n, k, m + p + 1) are M, U and r.
+    ``columns`` (t, n, k, m + p + 1) are [M U r].
     """
-    t, n, k, width = known.shape
+    t, n, k, width = columns.shape
     variances = stack.shared + (stack.std**2 / weights)[..., None] * np.eye(k)
-    solved = np.linalg.solve(variances, known)
-    flat = known.reshape(t, n * k, width)
+    solved = np.linalg.solve(variances, columns)
+    # Normal equations of each tow: [M U r]ᵀ V⁻¹ [M U r].
+    flat = columns.reshape(t, n * k, width)
     normal = flat.swapaxes(1, 2) @ solved.reshape(t, n * k, width)
-    # Rows of calibration, and columns of the model's errors, behind them the residual.
+    # Eliminate ν, whose prior precision is I: ν = C⁻¹ Uᵀ V⁻¹ (r - M μ), C = Uᵀ V⁻¹ U + I.
+    # ``eliminated`` (t, p, m + 1) is C⁻¹ Uᵀ V⁻¹ [M r].
     across = np.concatenate((normal[:, m:-1, :m], normal[:, m:-1, -1:]), axis=2)
-    of_tow = np.linalg.solve(normal[:, m:-1, m:-1] + np.eye(width - 1 - m), across)
-    matrix = np.sum(normal[:, :m, :m] - normal[:, :m, m:-1] @ of_tow[..., :m], axis=0)
-    right = np.sum(normal[:, :m, -1] - (normal[:, :m, m:-1] @ of_tow[..., m:])[..., 0], axis=0)
+    eliminated = np.linalg.solve(normal[:, m:-1, m:-1] + np.eye(width - 1 - m), across)
+    # Solve for μ with the Schur complements of all tows; its prior precision is I, once.
+    matrix = np.sum(normal[:, :m, :m] - normal[:, :m, m:-1] @ eliminated[..., :m], axis=0)
+    right = np.sum(normal[:, :m, -1] - (normal[:, :m, m:-1] @ eliminated[..., m:])[..., 0], axis=0)
     model = np.linalg.solve(matrix + np.eye(m), right)
-    without = np.ones((t, 1, width, 1))
-    without[:, 0, :m, 0] = -model
-    without[:, 0, m:-1, 0] = of_tow[..., :m] @ model - of_tow[..., m]
-    own: FloatArray = stack.std / weights * (solved @ without)[..., 0] * stack.present
+    # [M U r] @ (-μ, -ν, 1) is r - M μ - U ν.
+    combination = np.ones((t, 1, width, 1))
+    combination[:, 0, :m, 0] = -model
+    combination[:, 0, m:-1, 0] = eliminated[..., :m] @ model - eliminated[..., m]
+    # (D/w) V⁻¹ (r - M μ - U ν), divided by the std.
+    own: FloatArray = stack.std / weights * (solved @ combination)[..., 0] * stack.present
     return own
 
 
 def _extrapolated(
-    updated: FloatArray, step: FloatArray, before: FloatArray | None
+    updated: FloatArray, step: FloatArray, previous_step: FloatArray | None
 ) -> tuple[FloatArray, FloatArray | None]:
-    """Weights at the end of steps that fall by one factor (Aitken 1926).
+    """Extrapolate the weights to the limit of geometrically decreasing steps (Aitken 1926).
 
-    They are extrapolated after two such steps; given too is the step to compare the next with.
+    Returns
+    -------
+    tuple
+        Weights, extrapolated after every second step, and the step to compare the next one with.
+        It is None after an extrapolation, which starts a new pair of steps.
     """
-    if before is None:
+    if previous_step is None:
         return updated, step
-    square, along = float(np.vdot(before, before)), float(np.vdot(step, before))
-    if not 0.0 < along < STEADY * square:
+    # Ratio of the steps by least squares: ρ = projection / square.
+    square = float(np.vdot(previous_step, previous_step))
+    projection = float(np.vdot(step, previous_step))
+    if not 0.0 < projection < MAX_STEP_RATIO * square:
         return updated, step
-    beyond = along / (square - along)
-    return np.clip(updated + beyond * step, 0.5 * updated, 1.0), None
+    # The remaining steps add up to step · (ρ + ρ² + …) = step · ρ / (1 - ρ).
+    remaining = projection / (square - projection)
+    # Weights are positive and at most 1, so an overshoot is limited to half of the update.
+    return np.clip(updated + remaining * step, 0.5 * updated, 1.0), None
 
 
 def reweighted(elimination: NuisanceElimination, huber: float) -> tuple[FloatArray, ...]:
-    """Huber weights (n, k) of each tow for the readings' own errors."""
+    """Return Huber weights (n, k) of each tow for the own errors of an elimination."""
     return tuple(_huber_weights(tow.own, huber) for tow in elimination.tows)
 
 
 def _huber_weights(own: FloatArray, huber: float) -> FloatArray:
+    """Return min(1, huber / abs(own)) for own errors in std."""
     weights: FloatArray = huber / np.maximum(np.abs(own), huber)
     return weights
 
 
-def _solved(
-    stack: ErrorStack, tows: Sequence[TowErrors], every: FloatArray, huber: float
+def _eliminate_with_weights(
+    stack: ErrorStack, tows: Sequence[TowErrors], weights: FloatArray, huber: float
 ) -> NuisanceElimination:
-    """Elimination with Huber weights ``every`` (t, n, k)."""
+    """Eliminate δ, ν and μ with fixed Huber weights (t, n, k)."""
     t, n, k, width = stack.columns.shape
     m, p = tows[0].model.shape[2], tows[0].calibration.shape[2]
     q = width - p - m - 1
-    diagonal = (stack.std**2 / every)[..., None] * np.eye(k)
+    # Whiten each window with the Cholesky factor of V = D/w + G Gᵀ. This eliminates δ.
+    diagonal = (stack.std**2 / weights)[..., None] * np.eye(k)
     roots = np.asarray(np.linalg.cholesky(diagonal + stack.shared), np.float64)
     inverse = np.asarray(np.linalg.inv(roots), np.float64)
     rows = (inverse @ stack.columns).reshape(t, n * k, width)
@@ -217,27 +244,29 @@ def _solved(
         Information(square[:-1, :-1], square[:-1, -1], float(square[-1, -1]), float(determinant))
         for square, determinant in zip(squares, determinants, strict=True)
     ]
+    # Prior precisions: 0 for Δ, whose prior is added later, and 1 for μ and ν.
     precision = np.concatenate((np.zeros(q), np.ones(m + p)))
     found = joined(blocks, [precision] * t, q + m)
-    whole = Information(found.matrix, found.right, 0.0, 0.0)
-    model = own_values(whole, found.precision, np.zeros(q))
+    # Most likely μ and ν at Δ = 0.
+    both = Information(found.matrix, found.right, 0.0, 0.0)
+    model = own_values(both, found.precision, np.zeros(q))
     shared = np.concatenate((np.zeros(q), model))
     calibration = np.array([own_values(block, precision, shared) for block in blocks])
-    parts = _explained(stack, inverse, every, model, calibration, huber)
+    errors = _most_likely_errors(stack, inverse, weights, model, calibration, huber)
     return NuisanceElimination(
         tuple(
             TowPart(
                 tow,
                 block,
-                stack.std[place, : len(tow.rows)],
-                every[place, : len(tow.rows)],
-                roots[place, : len(tow.rows)],
-                parts.own[place, : len(tow.rows)],
-                calibration[place],
-                parts.inputs[place, : len(tow.rows)],
-                float(parts.costs[place]),
+                stack.std[number, : len(tow.rows)],
+                weights[number, : len(tow.rows)],
+                roots[number, : len(tow.rows)],
+                errors.own[number, : len(tow.rows)],
+                calibration[number],
+                errors.inputs[number, : len(tow.rows)],
+                float(errors.costs[number]),
             )
-            for place, (tow, block) in enumerate(zip(tows, blocks, strict=True))
+            for number, (tow, block) in enumerate(zip(tows, blocks, strict=True))
         ),
         found,
         model,
@@ -245,33 +274,37 @@ def _solved(
 
 
 @dataclass(frozen=True)
-class _Explained:
-    """Most likely errors of readings: ``own`` (t, n, k), ``inputs`` (t, n, 4), ``costs`` (t,)."""
+class _MostLikelyErrors:
+    """Most likely ε ``own`` (t, n, k) and δ ``inputs`` (t, n, 4), in std, and ``costs`` (t,)."""
 
     own: FloatArray
     inputs: FloatArray
     costs: FloatArray
 
 
-def _explained(
+def _most_likely_errors(
     stack: ErrorStack,
     inverse: FloatArray,
-    every: FloatArray,
+    weights: FloatArray,
     model: FloatArray,
     calibration: FloatArray,
     huber: float,
-) -> _Explained:
-    """Find the most likely errors at Δ = 0."""
+) -> _MostLikelyErrors:
+    """Find the most likely δ and ε at Δ = 0, and the robust cost of each tow.
+
+    ``inverse`` (t, n, k, k) is L⁻¹ of V = L Lᵀ, ``model`` (m,) is μ and ``calibration`` (t, p) ν.
+    """
     m, p = len(model), calibration.shape[1]
-    of_model, of_tow = (
-        stack.columns[..., -(m + p + 1) : -(p + 1)],
-        stack.columns[..., -(p + 1) : -1],
+    by_model = stack.columns[..., -(m + p + 1) : -(p + 1)]
+    by_calibration = stack.columns[..., -(p + 1) : -1]
+    # Split r - M μ - U ν = G δ + ε: δ = Gᵀ V⁻¹ (…) and ε = (D/w) V⁻¹ (…).
+    remaining = (
+        stack.residual - by_model @ model - (by_calibration @ calibration[:, None, :, None])[..., 0]
     )
-    left = stack.residual - of_model @ model - (of_tow @ calibration[:, None, :, None])[..., 0]
-    solved = inverse.swapaxes(2, 3) @ (inverse @ left[..., None])
+    solved = inverse.swapaxes(2, 3) @ (inverse @ remaining[..., None])
     inputs = (stack.inputs.swapaxes(2, 3) @ solved)[..., 0]
-    own = stack.std / every * solved[..., 0] * stack.present
+    own = stack.std / weights * solved[..., 0] * stack.present
     size = np.abs(own)
     loss = np.where(size <= huber, 0.5 * size**2, huber * (size - 0.5 * huber))
     squares = np.sum(inputs**2, (1, 2)) + np.sum(calibration**2, 1)
-    return _Explained(own, inputs, loss.sum((1, 2)) + 0.5 * squares)
+    return _MostLikelyErrors(own, inputs, loss.sum((1, 2)) + 0.5 * squares)

@@ -29,7 +29,7 @@ STEP_MINUTES = 0.5
 
 
 @dataclass(frozen=True)
-class Ability:
+class VesselLimits:
     """Limits of ship and winches, and the range of towing speeds.
 
     ``winch_speed``, ``least_speed`` (m/s), ``winch_acceleration``, ``ship_acceleration`` (m/s²);
@@ -49,10 +49,10 @@ class Ability:
         return min(self.least_speed + self.winch_speed, self.most_speed)
 
 
-def ability_of(gear: GearRecord, manoeuvres: Sequence[Manoeuvre]) -> Ability:
+def vessel_limits(gear: GearRecord, manoeuvres: Sequence[Manoeuvre]) -> VesselLimits:
     """Limits by a gear file, between the speeds of these manoeuvres."""
     speeds = [manoeuvre.speed for manoeuvre in manoeuvres]
-    return Ability(
+    return VesselLimits(
         gear.winch.max_speed_m_s,
         gear.winch.max_acceleration_m_s2,
         gear.ship.max_acceleration_m_s2,
@@ -80,9 +80,9 @@ class Leg:
         return self.minutes + self.veering_minutes
 
 
-def winch_time(ability: Ability, metres: float) -> float:
+def winch_time(vessel: VesselLimits, metres: float) -> float:
     """Time (s) to veer or haul so many metres, from rest to rest."""
-    most, speed = ability.winch_acceleration, ability.winch_speed
+    most, speed = vessel.winch_acceleration, vessel.winch_speed
     if metres <= speed**2 / most:
         return 2.0 * math.sqrt(metres / most)
     return metres / speed + speed / most
@@ -193,7 +193,7 @@ class Timetable:
 
     Parameters
     ----------
-    ability
+    vessel
         Of ship and winches.
     options
         Criteria of a steady window.
@@ -202,9 +202,9 @@ class Timetable:
     """
 
     def __init__(
-        self, ability: Ability, options: WindowOptions, candidates: Iterable[TowableManoeuvre]
+        self, vessel: VesselLimits, options: WindowOptions, candidates: Iterable[TowableManoeuvre]
     ) -> None:
-        self.ability = ability
+        self.vessel = vessel
         self.options = options
         self._by_lengths: dict[tuple[float, float], dict[float, Rest]] = {}
         for candidate in candidates:
@@ -242,16 +242,16 @@ class Timetable:
         return self._at(manoeuvre)[manoeuvre.speed]
 
     def _leg(self, before: Manoeuvre, after: Manoeuvre, depth: float) -> Leg:
-        ability, rest = self.ability, self._rest(after)
+        vessel, rest = self.vessel, self._rest(after)
         moved = (
             after.port_length - before.port_length,
             after.starboard_length - before.starboard_length,
         )
-        winding = winch_time(ability, max(map(abs, moved)))
-        out = max(moved) > 0.0 and after.speed < ability.veering_speed
-        speed = max(ability.veering_speed, before.speed) if out else after.speed
+        winding = winch_time(vessel, max(map(abs, moved)))
+        out = max(moved) > 0.0 and after.speed < vessel.veering_speed
+        speed = max(vessel.veering_speed, before.speed) if out else after.speed
         # The ship changes her speed first: the net rises or sinks, and then with the warps.
-        changing = abs(speed - before.speed) / ability.ship_acceleration
+        changing = abs(speed - before.speed) / vessel.ship_acceleration
         between = self._depth_at(before, speed, depth)
         there = self._depth_at(after, speed, rest.net_depth)
         left = rest.left(between - depth, changing, max(winding - changing, 0.0))
@@ -260,7 +260,7 @@ class Timetable:
             hold = holding_time(after, self.options, rest.time(left))
             return Leg(after, _rounded(max(winding, changing) + hold))
         running = _rounded(changing + winding)
-        slowing = abs(speed - after.speed) / ability.ship_acceleration
+        slowing = abs(speed - after.speed) / vessel.ship_acceleration
         left = rest.left(left, 0.0, slowing) + rest.left(rest.net_depth - there, slowing)
         hold = holding_time(after, self.options, rest.time(left))
         return Leg(after, _rounded(slowing + hold), speed, running)

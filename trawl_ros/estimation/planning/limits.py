@@ -37,7 +37,7 @@ def limits_of(
         Quantities of the laws after it.
     """
     once, often = (designer.information(manoeuvres, times) for times in (1.0, WITHOUT_END))
-    among = unknowns(designer.question.prior, designer.question.estimator)
+    among = unknowns(designer.problem.prior, designer.problem.estimator)
     every = set(range(len(among)))
     calibration, model = ({*chain(*among.blocks(kind))} for kind in ('calibration', 'model'))
     remedies = (
@@ -50,8 +50,8 @@ def limits_of(
     remedy: dict[str, str] = {}
     for name, information, kept in remedies:
         chosen = sorted(kept)
-        covariance = covariance_from(information[np.ix_(chosen, chosen)], designer.question.prior)
-        helped = designer.question.quantities(covariance).well_known
+        covariance = covariance_from(information[np.ix_(chosen, chosen)], designer.problem.prior)
+        helped = designer.problem.quantities(covariance).well_known
         for quantity, before, after in zip(QUANTITIES, known.well_known, helped, strict=True):
             if after and not before:
                 remedy.setdefault(quantity, name)
@@ -64,7 +64,7 @@ def limits_of(
 
 def _partner(designer: Designer, covariance: FloatArray, index: int) -> str:
     """Name the coefficient of another law whose knowledge would improve a quantity most."""
-    row = law_rows(designer.question.angles)[index]
+    row = law_rows(designer.problem.angles)[index]
     shared = (covariance @ row) ** 2 / np.diag(covariance)
     shared[LAWS[index % len(LAWS)].columns] = 0.0
     return COEFFICIENTS[int(np.argmax(shared))]

@@ -12,7 +12,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.fit import Fit
 from trawl_ros.estimation.planning.advice import Advice, RankedManoeuvre
-from trawl_ros.estimation.planning.duration import Timetable, ability_of, minutes_of
+from trawl_ros.estimation.planning.duration import Timetable, minutes_of, vessel_limits
 from trawl_ros.estimation.planning.information import (
     covariance_from,
     information_in,
@@ -269,8 +269,8 @@ class Adviser:
         )
 
     def _timetable(self, known: _Known) -> Timetable:
-        ability = ability_of(self._gear, tuple(known))
-        return Timetable(ability, self._windows, known.values())
+        vessel = vessel_limits(self._gear, tuple(known))
+        return Timetable(vessel, self._windows, known.values())
 
     def _moved(self, before: FloatArray, now: FloatArray) -> bool:
         return bool(np.max(np.abs(now - before) / self._scale) > STALE)

@@ -20,9 +20,9 @@ from trawl_ros.estimation.fit.laws import (
     working_angles,
 )
 from trawl_ros.estimation.from_gear import board_prior, predictor_for
-from trawl_ros.estimation.planning.duration import Leg, ability_of
+from trawl_ros.estimation.planning.duration import Leg, vessel_limits
 from trawl_ros.estimation.planning.limits import limits_of
-from trawl_ros.estimation.planning.search import Designer, Question
+from trawl_ros.estimation.planning.search import Designer, DesignProblem
 from trawl_ros.estimation.planning.states import (
     Explorer,
     Limits,
@@ -62,8 +62,8 @@ class TrialPlan:
     ----------
     gear
         Its name.
-    question
-        The question of the plan.
+    problem
+        Design problem that the plan solves.
     choice
         The manoeuvres among which was chosen, and those that are not to be had.
     trial
@@ -88,7 +88,7 @@ class TrialPlan:
     """
 
     gear: str
-    question: Question
+    problem: DesignProblem
     choice: ManoeuvreChoice
     trial: SweepTrial
     gains: tuple[Gain, ...]
@@ -134,13 +134,13 @@ def plan_for(
     predictor = predictor_for(gear)
     explorer = Explorer(predictor, prior.start, limits)
     choice = explore(explorer, on_progress)
-    question = question_for(
+    problem = problem_for(
         gear, choice, prior.start, hours=hours, windows=windows, estimator=estimator
     )
     filed = Explorer(predictor, gear.board.coefficients.array(), limits)
     explored: dict[Manoeuvre, TowableManoeuvre] = {}
     while True:
-        designer = Designer(question, choice.candidates)
+        designer = Designer(problem, choice.candidates)
         legs = designer.best()
         if len(legs) < LEAST_LEGS:
             raise TrawlError(
@@ -152,8 +152,8 @@ def plan_for(
         if not lost:
             break
         choice = choice.without(lost)
-    there = _as_filed(question, list(explored.values()), gear)
-    data_alone = replace(question, estimator=replace(question.estimator, prior_weight=0.0))
+    there = _as_filed(problem, list(explored.values()), gear)
+    data_alone = replace(problem, estimator=replace(problem.estimator, prior_weight=0.0))
     trials = []
     for name, chosen, noise in (
         ('plan', legs, TABLE_NOISE),
@@ -164,7 +164,7 @@ def plan_for(
         known, by_data, as_filed = (
             asked.quantities(Designer(asked, candidates, noise).fitted(done))
             for asked, candidates in (
-                (question, choice.candidates),
+                (problem, choice.candidates),
                 (data_alone, choice.candidates),
                 (there, explored.values()),
             )
@@ -173,17 +173,17 @@ def plan_for(
     trial = trials[0]
     return TrialPlan(
         gear=gear.name,
-        question=question,
+        problem=problem,
         choice=choice,
         trial=trial,
         gains=_gains(designer, trial.manoeuvres),
         limits=limits_of(designer, trial.manoeuvres, trial.known),
-        before=question.quantities(np.diag(prior.std**2)),
+        before=problem.quantities(np.diag(prior.std**2)),
         sweeps=tuple(trials[1:]),
     )
 
 
-def question_for(
+def problem_for(
     gear: GearRecord,
     choice: ManoeuvreChoice,
     coefficients: FloatArray,
@@ -191,17 +191,17 @@ def question_for(
     hours: float,
     windows: WindowOptions | None = None,
     estimator: EstimatorOptions | None = None,
-) -> Question:
-    """Question of a plan with a board (12,), among the manoeuvres that were explored with it."""
+) -> DesignProblem:
+    """Return the design problem for a board (12,) and the manoeuvres explored with it."""
     prior = board_prior(gear)
-    return Question(
+    return DesignProblem(
         coefficients=np.array(coefficients),
         prior=prior,
         angles=_angles(choice.candidates),
         span=law_spans(prior.start, prior.std),
         estimator=estimator or EstimatorOptions(),
         windows=windows or WindowOptions(),
-        ability=ability_of(gear, [candidate.manoeuvre for candidate in choice.candidates]),
+        vessel=vessel_limits(gear, [candidate.manoeuvre for candidate in choice.candidates]),
         minutes=60.0 * hours,
     )
 
@@ -254,12 +254,12 @@ def _gains(designer: Designer, manoeuvres: Sequence[Manoeuvre]) -> tuple[Gain, .
 
 
 def _as_filed(
-    question: Question, candidates: Sequence[TowableManoeuvre], gear: GearRecord
-) -> Question:
-    """The same design question with the board that the gear file describes."""
+    problem: DesignProblem, candidates: Sequence[TowableManoeuvre], gear: GearRecord
+) -> DesignProblem:
+    """The same design problem with the board that the gear file describes."""
     coefficients = gear.board.coefficients.array()
     return replace(
-        question,
+        problem,
         coefficients=coefficients,
         angles=_angles(candidates),
         span=law_spans(coefficients),

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Proposals for a trial that runs itself, from the advice on the next manoeuvre."""
+"""Conversion of the planner's advice into proposals for the controller of an autonomous survey."""
 
 from trawl_ros.control.trial.records import Knowledge, Proposal, TrialTarget
 from trawl_ros.estimation.fit.laws import QUANTITIES
@@ -8,14 +8,14 @@ from trawl_ros.estimation.planning.advice import Advice, RankedManoeuvre
 
 
 def knowledge_of(advice: Advice | None, windows: int) -> Knowledge:
-    """Return what an estimator that has used so many windows knows.
+    """Return the knowledge record of an estimator.
 
     Parameters
     ----------
     advice
-        None before there is any.
+        Newest advice on the next manoeuvre; None before the first.
     windows
-        Number of windows used, which the advice may lag behind.
+        Number of windows that the estimator has used. The advice may be based on fewer.
     """
     if advice is None:
         return Knowledge(windows=windows)
@@ -31,14 +31,14 @@ def knowledge_of(advice: Advice | None, windows: int) -> Knowledge:
 def _proposal(ranked: RankedManoeuvre) -> Proposal:
     manoeuvre = ranked.manoeuvre
     return Proposal(
-        TrialTarget(
+        target=TrialTarget(
             port=manoeuvre.port_length,
             starboard=manoeuvre.starboard_length,
             speed=manoeuvre.speed,
         ),
-        ranked.minutes,
-        ranked.nats,
-        ranked.rate,
-        ranked.tension,
-        ranked.deepest,
+        minutes=ranked.minutes,
+        nats=ranked.nats,
+        rate=ranked.rate,
+        tension=ranked.tension,
+        deepest=ranked.deepest,
     )

@@ -1,6 +1,10 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Search for the most informative manoeuvres within a given time."""
+"""Search for the most informative manoeuvres within a given time.
+
+The design is built by greedy addition and then improved by exchanges, in the manner of Fedorov's
+exchange algorithm for optimal designs (1972).
+"""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -14,9 +18,9 @@ from trawl_ros.estimation.fit.laws import WELL_KNOWN, LawQuantities, WorkingAngl
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.planning.duration import (
-    Ability,
     Leg,
     Timetable,
+    VesselLimits,
     arranged,
     minutes_of,
     rest_of,
@@ -31,24 +35,44 @@ from trawl_ros.estimation.planning.states import Manoeuvre, TowableManoeuvre
 from trawl_ros.estimation.planning.windows import TABLE_NOISE, imagined_windows
 from trawl_ros.estimation.windows.records import WindowOptions
 
-LEAST_GAIN = 1e-9
-"""A gain below this is none: what rounding may give must not decide."""
+MIN_GAIN = 1e-9
+"""Smallest fall of the shortfall, or relative rise of its rate, that counts; less is rounding."""
+
+MAX_VISITS_PER_STATE = 2
+"""Most visits of a trial to a steady state. The information in a state is computed with assumed
+coefficients, so a trial that rests on few states would depend too much on this assumption."""
 
 
 def shortfall(quantities: LawQuantities) -> float:
-    """Shortfall: design criterion of the twelve quantities' std, to be minimised.
+    """Return the shortfall, the design criterion (nats) to be minimised.
 
-    Mean of log(1 + (ratio / 0.2)²) / 2: of a quantity that is hardly known the logarithm of its
-    std counts, and little is won by knowing better what is well known.
+    It is the mean of ½ log(1 + (ratio / `WELL_KNOWN`)²) over the twelve quantities, where ratio is
+    std over span. A poorly known quantity counts by the logarithm of its std, as in a D-optimal
+    design. The gain levels off once a quantity is well known.
     """
     return float(0.5 * np.mean(np.log1p((quantities.ratio / WELL_KNOWN) ** 2)))
 
 
 @dataclass(frozen=True)
-class Question:
-    """Design question: the laws of this board, their spans, and the time for the trial.
+class DesignProblem:
+    """Problem of optimal design: what to learn, how it is estimated, and the time for it.
 
-    ``coefficients`` (12,) as they are believed to be, ``span`` (12,) from `law_spans`.
+    Attributes
+    ----------
+    coefficients : (12,) array
+        Assumed board coefficients.
+    prior
+        Prior of the coefficients.
+    angles
+        Mean attack and slip angle (rad) at which the laws are to be known.
+    span : (12,) array
+        Range of each law, from `law_spans`.
+    estimator, windows
+        Options of the estimator, and of the steady windows.
+    vessel
+        Limits of ship and winches.
+    minutes
+        Time for the trial, min.
     """
 
     coefficients: FloatArray
@@ -57,105 +81,113 @@ class Question:
     span: FloatArray
     estimator: EstimatorOptions
     windows: WindowOptions
-    ability: Ability
+    vessel: VesselLimits
     minutes: float
 
     def quantities(self, covariance: FloatArray) -> LawQuantities:
-        """Quantities of the laws with a covariance (12, 12) of the coefficients."""
+        """Return value and slope of the laws for a covariance (12, 12) of the coefficients."""
         return law_quantities(self.coefficients, covariance, self.angles, self.span)
 
 
-MOST_VISITS = 2
-"""Most visits of a trial to a steady state. The information in a state is computed with the
-board as it is believed to be; a trial that rests on few states is as good as this belief."""
-
-
 class Designer:
-    """Builder of trials from candidates.
+    """Builder of trials from candidate manoeuvres.
 
     Parameters
     ----------
-    question
-        The question of the plan.
+    problem
+        Design problem.
     candidates
         Manoeuvres to choose from.
     noise
-        Standard error of each channel's mean; channels that are not in it are not heard.
+        Standard error (SI) of each channel's window mean. Other channels are not measured.
     """
 
     def __init__(
         self,
-        question: Question,
+        problem: DesignProblem,
         candidates: Iterable[TowableManoeuvre],
         noise: Mapping[str, float] = TABLE_NOISE,
     ) -> None:
-        self.question = question
+        self.problem = problem
         self.candidates = tuple(candidates)
         self.noise = noise
-        self.timetable = Timetable(question.ability, question.windows, self.candidates)
+        self.timetable = Timetable(problem.vessel, problem.windows, self.candidates)
         self._number = {
             candidate.manoeuvre: index for index, candidate in enumerate(self.candidates)
         }
-        self._before = information_before(question.prior, question.estimator)
-        self._taught = [
-            information_of(self._windows(candidate, 0), question.prior, question.estimator)
+        self._before = information_before(problem.prior, problem.estimator)
+        # Information matrix of the windows of each candidate.
+        self._gained = [
+            information_of(self._windows(candidate, 0), problem.prior, problem.estimator)
             for candidate in self.candidates
         ]
 
     def legs(self, manoeuvres: Sequence[Manoeuvre]) -> tuple[Leg, ...] | None:
-        """Order manoeuvres into legs; None where they do not fit into the time."""
-        if max(Counter(manoeuvres).values(), default=0) > MOST_VISITS:
+        """Order manoeuvres into legs.
+
+        Return None if they do not fit into the time, or visit a state too often.
+        """
+        if max(Counter(manoeuvres).values(), default=0) > MAX_VISITS_PER_STATE:
             return None
         ordered = arranged(manoeuvres)
         if ordered is None:
             return None
         legs = self.timetable.legs(ordered)
-        return legs if minutes_of(legs) <= self.question.minutes else None
+        return legs if minutes_of(legs) <= self.problem.minutes else None
 
     def _windows(self, candidate: TowableManoeuvre, state: int) -> tuple[Linearised, ...]:
-        question = self.question
+        """Predict the steady windows of a candidate; ``state`` is their state number."""
+        problem = self.problem
         return imagined_windows(
             candidate,
-            question.coefficients,
+            problem.coefficients,
             state=state,
-            number=question.windows.max_windows_per_state,
+            number=problem.windows.max_windows_per_state,
             noise=self.noise,
-            to_come=rest_of(candidate, question.windows).to_come(question.windows),
+            to_come=rest_of(candidate, problem.windows).to_come(problem.windows),
         )
 
     def information(self, manoeuvres: Sequence[Manoeuvre], times: float = 1.0) -> FloatArray:
-        """Information matrix after manoeuvres, each repeated ``times`` times."""
-        taught = [self._taught[self._number[manoeuvre]] for manoeuvre in manoeuvres]
-        return self._before + times * sum(taught)
+        """Return the information matrix after manoeuvres, each repeated ``times`` times.
+
+        It includes the prior's, and is in units of the prior std. Its last 12 rows belong to the
+        coefficients; those before them belong to errors that all windows share.
+        """
+        gained = [self._gained[self._number[manoeuvre]] for manoeuvre in manoeuvres]
+        return self._before + times * sum(gained)
 
     def covariance(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
-        """Posterior covariance (12, 12) of the coefficients after manoeuvres."""
-        return covariance_from(self.information(manoeuvres), self.question.prior)
+        """Return the posterior covariance (12, 12) of the coefficients after manoeuvres."""
+        return covariance_from(self.information(manoeuvres), self.problem.prior)
 
     def fitted(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
-        """Posterior covariance (12, 12) as the estimator itself gives it."""
-        question = self.question
+        """Return the posterior covariance (12, 12) that the estimator itself computes.
+
+        It agrees with `covariance`, which is faster and is used in the search.
+        """
+        problem = self.problem
         windows = [
             linear
             for state, manoeuvre in enumerate(manoeuvres)
             for linear in self._windows(self.candidates[self._number[manoeuvre]], state)
         ]
-        return fitted_covariance(windows, question.coefficients, question.prior, question.estimator)
+        return fitted_covariance(windows, problem.coefficients, problem.prior, problem.estimator)
 
     def quantities(self, manoeuvres: Sequence[Manoeuvre]) -> LawQuantities:
-        """Quantities of the laws after manoeuvres."""
-        return self.question.quantities(self.covariance(manoeuvres))
+        """Return value and slope of the laws after manoeuvres."""
+        return self.problem.quantities(self.covariance(manoeuvres))
 
     def shortfall(self, manoeuvres: Sequence[Manoeuvre]) -> float:
-        """Shortfall of the quantities after manoeuvres."""
+        """Return the shortfall after manoeuvres."""
         return shortfall(self.quantities(manoeuvres))
 
     def best(self) -> tuple[Leg, ...]:
-        """Return the trial of least shortfall that greedy addition and exchange find.
+        """Return the legs of the best trial that greedy addition and exchange find.
 
-        Manoeuvres are added by what they gain per minute until the time is up; then each is
-        exchanged for whatever gains most, and what has become free is filled, until nothing
-        gains. Ties fall to the first candidate, so that the result is always the same.
+        First the manoeuvre with the largest gain per minute is added until the time is used up.
+        Then each manoeuvre is exchanged for the one with the largest gain, and time that becomes
+        free is filled again. The search ends when no exchange gains. Of equal candidates the first
+        is taken, so the result is reproducible.
         """
         chosen: list[Manoeuvre] = []
         while True:
@@ -166,6 +198,7 @@ class Designer:
             chosen = better
 
     def _filled(self, chosen: list[Manoeuvre]) -> list[Manoeuvre]:
+        """Add manoeuvres by their gain per minute until none fits or gains."""
         while True:
             now = self.shortfall(chosen)
             minutes = minutes_of(self.legs(chosen) or ())
@@ -173,20 +206,21 @@ class Designer:
             for candidate in self.candidates:
                 trial = [*chosen, candidate.manoeuvre]
                 gain = now - self.shortfall(trial)
-                if gain <= LEAST_GAIN:
+                if gain <= MIN_GAIN:
                     continue
                 legs = self.legs(trial)
                 if legs is None:
                     continue
+                # A reordered trial may be hardly longer; count at least one minute.
                 rate = gain / max(minutes_of(legs) - minutes, 1.0)
-                if rate > most * (1.0 + LEAST_GAIN):
+                if rate > most * (1.0 + MIN_GAIN):
                     best, most = trial, rate
             if best is chosen:
                 return chosen
             chosen = best
 
     def _exchanged(self, chosen: list[Manoeuvre]) -> list[Manoeuvre] | None:
-        """Return the result of one round of exchanges; None where nothing was gained."""
+        """Return the manoeuvres after one round of exchanges, or None if nothing was gained."""
         changed = False
         for place in range(len(chosen)):
             rest = chosen[:place] + chosen[place + 1 :]
@@ -194,6 +228,6 @@ class Designer:
             for candidate in self.candidates:
                 trial = [*rest[:place], candidate.manoeuvre, *rest[place:]]
                 left = self.shortfall(trial)
-                if left < least - LEAST_GAIN and self.legs(trial) is not None:
+                if left < least - MIN_GAIN and self.legs(trial) is not None:
                     chosen, least, changed = trial, left, True
         return chosen if changed else None

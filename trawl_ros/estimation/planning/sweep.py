@@ -74,7 +74,7 @@ def _sweep(designer: Designer, speed: float) -> tuple[Leg, ...]:
         if done and manoeuvre == done[-1]:
             return legs
         longer = designer.timetable.legs([*done, manoeuvre])
-        if minutes_of(longer) > designer.question.minutes:
+        if minutes_of(longer) > designer.problem.minutes:
             return legs
         legs, done = longer, [*done, manoeuvre]
     return legs

@@ -57,10 +57,10 @@ def plan_record(plan: TrialPlan) -> dict[str, object]:
     return {
         'gear': plan.gear,
         'minutes': plan.trial.minutes,
-        'budget_minutes': plan.question.minutes,
+        'budget_minutes': plan.problem.minutes,
         'working_angles_deg': {
-            'attack': math.degrees(plan.question.angles.attack),
-            'slip': math.degrees(plan.question.angles.slip),
+            'attack': math.degrees(plan.problem.angles.attack),
+            'slip': math.degrees(plan.problem.angles.slip),
         },
         'legs': [
             {

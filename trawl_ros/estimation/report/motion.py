@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Rows, sentences and JSON on what all of the tow adds to its steady windows."""
+"""Table, sentences and JSON of the fit of the whole tow, compared with its steady windows."""
 
 from collections.abc import Sequence
 
@@ -15,12 +15,27 @@ from trawl_ros.estimation.report.net import net_lines, net_result
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.records.coefficients import COEFFICIENTS
 
-MOST_NAMED = 3
-"""Stretches that are named in a sentence."""
+MAX_NAMED_STRETCHES = 3
+"""Largest number of badly fitting stretches that the sentence about them names."""
 
 
 def coefficient_rows(motion: MotionOutcome, truth: FloatArray | None) -> list[dict[str, object]]:
-    """Rows of the coefficients: prior std, estimates of windows and whole tow, ratio of std."""
+    """Return a row for each coefficient, all without unit.
+
+    Parameters
+    ----------
+    motion
+        Outcome of the fit of the whole tow.
+    truth : (12,) array, optional
+        True coefficients, if the tow is simulated.
+
+    Returns
+    -------
+    list of dict
+        Prior std; values and std by the windows and by the whole tow, with the latter's 95 %
+        interval; ``ratio`` of the std by the whole tow over that by the windows. The windows'
+        entries are None if there is no steady window.
+    """
     windows, rows = motion.windows, []
     for i, name in enumerate(COEFFICIENTS):
         row: dict[str, object] = {
@@ -42,7 +57,7 @@ def coefficient_rows(motion: MotionOutcome, truth: FloatArray | None) -> list[di
 
 
 def motion_table(report: Report) -> Table:
-    """Std of the prior, windows' and whole tow's estimate with theirs, and the ratio of these."""
+    """Return the table of `coefficient_rows`; the report must have windows and a whole-tow fit."""
     motion = report.motion
     assert motion is not None
     minutes = motion.duration_s / 60.0
@@ -67,17 +82,17 @@ def motion_table(report: Report) -> Table:
 
 
 def motion_lines(report: Report) -> list[str]:
-    """Sentences on the fit in motion; why there is none where it was asked for."""
+    """Return sentences on the fit of the whole tow, or the reason why it is missing."""
     motion = report.motion
     if motion is None:
         why = report.motion_refused
         return [f'Steady windows alone were used: {why}.'] if why else []
     means, fit = motion.geometric_means, motion.fit
-    both = f', a ratio of {means["ratio"]:.2f}' if report.windows else ''
+    ratio = f', a ratio of {means["ratio"]:.2f}' if report.windows else ''
     windows = f'{means["windows"]:.3f} by the windows, ' if report.windows else ''
     lines = [
         f'Std over that of the prior, geometric mean: {windows}{means["whole"]:.3f} by all of the '
-        f'tow{both}.',
+        f'tow{ratio}.',
         f'{_held_out(report, motion)}',
         f'{"At rest" if fit.converged else "NOT at rest"}: {fit.reason}. Whitened residuals have '
         f'{fit.misfit:.2f} of their std.',
@@ -88,7 +103,8 @@ def motion_lines(report: Report) -> list[str]:
         lines.append(f'Left out: {name}, {part.begin:.0f} to {part.end:.0f} s: {part.why}.')
     if poor := motion.poor:
         places = ', '.join(
-            f'{each.tow} at {each.begin:.0f} s ({each.size:.1f})' for each in poor[:MOST_NAMED]
+            f'{each.tow} at {each.begin:.0f} s ({each.size:.1f})'
+            for each in poor[:MAX_NAMED_STRETCHES]
         )
         lines.append(f'Stretches that fit badly: {len(poor)}, the worst {places}.')
     if motion.swells:
@@ -98,6 +114,7 @@ def motion_lines(report: Report) -> list[str]:
 
 
 def _in_swell(swells: Sequence[tuple[str, float]]) -> str:
+    """Return the warning about tows in a swell: their names, and std over mean of the tension."""
     swings = ', '.join(f'{100.0 * swell:.1f} % in {name}' for name, swell in swells)
     return (
         f'Within half a minute the tension swings by a part of its mean (std), {swings}: as in a '
@@ -108,6 +125,10 @@ def _in_swell(swells: Sequence[tuple[str, float]]) -> str:
 
 
 def _held_out(report: Report, motion: MotionOutcome) -> str:
+    """Return errors on held-out windows as a sentence.
+
+    They are the mean normalised absolute errors of eq. 35, with the whole tow and with windows.
+    """
     if not report.windows:
         return 'Nothing could be held out: it takes steady windows.'
     if np.isnan(motion.held_out).all():
@@ -123,7 +144,7 @@ def _held_out(report: Report, motion: MotionOutcome) -> str:
 
 
 def motion_result(report: Report) -> dict[str, object]:
-    """Build what ``identification.json`` has on the fit in motion."""
+    """Return the ``motion`` entry of ``identification.json``."""
     motion = report.motion
     if motion is None:
         return {'refused': report.motion_refused}

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Noise density of each channel: what averaging over a time leaves, as steady windows show it."""
+"""Noise density of each channel, estimated from the standard errors of steady windows."""
 
 from collections.abc import Mapping, Sequence
 
@@ -11,20 +11,20 @@ from trawl_ros.estimation.windows.records import SteadyWindow
 
 
 def noise_densities(windows: Sequence[SteadyWindow]) -> Mapping[str, float]:
-    """Noise densities of all channels, in their unit by √Hz, of both signs of the frequency.
+    """Return the noise density d of each channel, in its unit per √Hz, two-sided.
 
-    The mean over T seconds is wrong by the density over √T. Errors that neighbouring readings share
-    are in it, as in the errors of the windows' means; the scatter of a reading about its neighbours
-    does not show them.
+    The mean over T seconds has the standard error σ = d / √T. The estimate of d² is the mean of
+    σ² T over the windows. σ allows for the correlation of successive readings; the scatter of
+    readings about their neighbours would miss it.
 
     Parameters
     ----------
     windows
-        Of any tows; each of thirty or more readings tells its own noise badly, all together well.
+        Steady windows of any tows. The estimate of a single window is poor, so all are averaged.
     """
     squares: dict[str, list[float]] = {}
     for window in windows:
         duration_s = (window.end_ns - window.start_ns) / SECOND
         for name, noise in window.noise.items():
             squares.setdefault(name, []).append(noise**2 * duration_s)
-    return {name: float(np.sqrt(np.mean(own))) for name, own in squares.items()}
+    return {name: float(np.sqrt(np.mean(densities))) for name, densities in squares.items()}

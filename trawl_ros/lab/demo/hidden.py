@@ -23,7 +23,7 @@ from trawl_ros.core.files import made_folder
 from trawl_ros.core.parallel import cores
 from trawl_ros.core.resources import packaged
 from trawl_ros.core.units import UNITS
-from trawl_ros.diagnosis.report.writing import MODEL
+from trawl_ros.diagnosis.report.writing import MODEL_FILE
 from trawl_ros.estimation.bag_windows import BagTask, read_tow
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.load import load_gear
@@ -196,11 +196,11 @@ def hidden_effect(folder: Path, console: Console) -> None:
         with console.status('diagnosing'):
             found = commands.run(*_shown(*diagnose, FOUND), expected=DISCREPANCY)
         click.echo(found)
-        model = folder / FOUND / MODEL
+        model = folder / FOUND / MODEL_FILE
         if not model.is_file():
             raise TrawlError(f'{model.parent}: no effect was named; expected the current')
         tow_repaired(f'hidden_{TOWS[0]}', model, folder / TOWS[0], folder / REPAIRED, console)
-        repaired = ('--gear', f'{FOUND}/{MODEL}')
+        repaired = ('--gear', f'{FOUND}/{MODEL_FILE}')
         with console.status('diagnosing with the repaired gear'):
             again = commands.run(*_shown(*diagnose, AGAIN, *repaired), expected=NO_DISCREPANCY)
         click.echo(again)

@@ -19,7 +19,7 @@ from trawl_ros.core.progress import OnProgress
 from trawl_ros.core.units import UNITS
 from trawl_ros.diagnosis.procedure import diagnose_windows
 from trawl_ros.diagnosis.report.result import result
-from trawl_ros.diagnosis.report.writing import MODEL, write_diagnosis
+from trawl_ros.diagnosis.report.writing import MODEL_FILE, write_diagnosis
 from trawl_ros.estimation.windows.over_ground import GroundTrack
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.lab.trials.linearised_plant import LinearisedState, MeshResolution
@@ -134,6 +134,6 @@ def diagnose_short_tows(folder: Path, on_progress: OnProgress) -> Finding:
     gear = short.mesh.model(short.gear)
     found = diagnose_windows(gear, windows, short.names, known, on_progress)
     write_diagnosis(found, (), folder)
-    if not (folder / MODEL).is_file():
+    if not (folder / MODEL_FILE).is_file():
         raise TrawlError(f'{folder}: found {found.verdict}, expected the log to be named')
     return Finding(short, result(found, ()))

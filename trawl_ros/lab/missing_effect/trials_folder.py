@@ -1,6 +1,11 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Folder of blind trials: made, and read by a method; the key is a file next to it."""
+"""Writer and reader of a folder of blind trials; the key is a file next to the folder.
+
+The folder holds ``trials.json`` and a folder per trial. Methods read them and write a file of
+answers. The key holds the hidden causes. ``trials.json`` has the key's SHA-256, so that a later
+change of the key is noticed.
+"""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -46,11 +51,24 @@ from trawl_ros.records.topics import NAMESPACE
 TRIALS_FILE, WINDOWS_FILE, GEAR_FILE, BAGS_FOLDER = (
     'trials.json', 'windows.json', 'gear.yaml', 'bags',
 )  # fmt: skip
+"""Names in the folder of the trials, and in the folder of each trial (the last three)."""
 
 
 @dataclass(frozen=True)
 class TrialInput:
-    """Data of a trial: gear as it is known aboard, steady windows, tows, and the baseline."""
+    """Data of a trial, all that a method gets.
+
+    Attributes
+    ----------
+    gear
+        Gear as its file describes it aboard, without the hidden causes.
+    windows
+        Steady windows of all tows.
+    tows
+        Names of the tows, in their order.
+    baseline
+        Numbers, from 0, of the tows with the gear in order.
+    """
 
     gear: GearRecord
     windows: tuple[SteadyWindow, ...]
@@ -59,7 +77,7 @@ class TrialInput:
 
 
 def key_file(folder: Path) -> Path:
-    """Return the file with the key of a folder of trials, next to it."""
+    """Return the path of the key of a folder of trials, next to that folder."""
     return folder.with_name(f'{folder.name}_key.json')
 
 
@@ -72,20 +90,25 @@ def make_trials(
     form: Form = 'windows',
     on_progress: OnProgress = ignore,
 ) -> KeyRecord:
-    """Make blind trials, or go on where an earlier call for this folder ended.
+    """Make blind trials, or continue an interrupted call for the same folder.
 
     Parameters
     ----------
     folder
         Folder of the trials; the key is written next to it.
     seed, gear
-        Seed of all draws, and gear file or its name.
+        Seed of all random draws; gear file, or name of a built-in one.
     trials
-        Number of trials that the folder has in the end.
+        Number of trials in the finished folder, those of earlier calls included.
     form
-        Form of the data.
+        Form of the data: steady windows or bags.
     on_progress
         Called after each trial.
+
+    Returns
+    -------
+    KeyRecord
+        Key of all trials. Drawn trials that could not be made are in it with the reason.
 
     Raises
     ------
@@ -94,6 +117,7 @@ def make_trials(
     """
     key = KeyRecord(seed=seed, gear=gear, form=form, trials={}, not_possible={})
     if key_file(folder).exists():
+        # Continue only a folder that was begun with the same arguments.
         wanted, key = key, _read(KeyRecord, key_file(folder))
         for name in ('seed', 'gear', 'form'):
             if getattr(key, name) != getattr(wanted, name):
@@ -119,14 +143,15 @@ def make_trials(
 
 
 def trial_name(number: int) -> str:
-    """Return the name of a trial."""
+    """Return the name of the trial with a number, which is also that of its folder."""
     return f'trial_{number:03}'
 
 
 def _make_one(folder: Path, spec: Spec, key: KeyRecord) -> Key:
+    """Make the folder of one trial; a trial that cannot be tested leaves none."""
     path = folder / trial_name(spec.number)
     if path.exists():
-        # An earlier call ended before it had written the key of this trial.
+        # An earlier call was interrupted before it wrote the key of this trial.
         rmtree(path)
     with written_folder(path, TrawlError) as draft:
         draft.mkdir()
@@ -143,7 +168,7 @@ def _make_one(folder: Path, spec: Spec, key: KeyRecord) -> Key:
 
 
 def truth_of(key: Key) -> TruthRecord:
-    """Return the truth of a trial with the answers that are right."""
+    """Return the truth of a trial: hidden causes, right answers, and board coefficients (12,)."""
     return TruthRecord(
         series=key.spec.series,
         strength=key.spec.strength,
@@ -164,16 +189,17 @@ def truth_of(key: Key) -> TruthRecord:
 
 
 def write_key(folder: Path, key: KeyRecord) -> None:
-    """Write the key next to the folder, and in the folder what a method may see."""
+    """Write the key next to the folder, and ``trials.json``, which a method may see, into it."""
     write_json(key_file(folder), key.model_dump(mode='json'), indent=1)
-    tows = PLANS[drawn_spec(key.seed, 0).plan]
-    names = tuple(f'tow_{number:02}' for number in range(1, len(tows.tows) + 1))
+    # All trials have the same plan of tows.
+    plan = PLANS[drawn_spec(key.seed, 0).plan]
+    names = tuple(f'tow_{number:02}' for number in range(1, len(plan.tows) + 1))
     record = TrialsRecord(
         format=1,
         form=key.form,
         key_sha256=sha256(key_file(folder).read_bytes()).hexdigest(),
         trials=tuple(
-            TrialRecord(name=name, tows=names, baseline=tows.baseline) for name in key.trials
+            TrialRecord(name=name, tows=names, baseline=plan.baseline) for name in key.trials
         ),
         hypotheses=hypotheses(load_gear(key.gear)),
     )
@@ -181,7 +207,7 @@ def write_key(folder: Path, key: KeyRecord) -> None:
 
 
 def hypotheses(gear: GearRecord) -> tuple[HypothesisRecord, ...]:
-    """Return all hypotheses on a gear, with the units of their parameters."""
+    """Return all hypotheses of the library for a gear, with the units of their parameters."""
     return tuple(
         HypothesisRecord(
             path=entry.path,
@@ -197,7 +223,7 @@ def hypotheses(gear: GearRecord) -> tuple[HypothesisRecord, ...]:
 
 
 def read_trials(folder: Path) -> TrialsRecord:
-    """Read what a method may see of all trials."""
+    """Read ``trials.json``, which a method may see."""
     return _read(TrialsRecord, folder / TRIALS_FILE)
 
 
@@ -232,18 +258,25 @@ def read_windows(path: Path) -> tuple[SteadyWindow, ...]:
 
 
 def read_bags(bags: Sequence[Path], gear: GearRecord) -> tuple[SteadyWindow, ...]:
-    """Read the steady windows of bags, one for each tow."""
+    """Find the steady windows of bags, one bag for each tow, in the order of the tows."""
     windows, _ = numbered([read_tow(BagTask(bag, gear, NAMESPACE)) for bag in bags])
     return tuple(windows)
 
 
 def read_key(folder: Path, path: Path | None = None) -> KeyRecord:
-    """Read the key of a folder of trials.
+    """Read and check the key of a folder of trials.
+
+    Parameters
+    ----------
+    folder
+        Folder of the trials.
+    path
+        File of the key; by default the one next to the folder.
 
     Raises
     ------
     TrawlError
-        If it is missing, or is not the one whose SHA-256 the folder has.
+        If the key is missing, or its SHA-256 is not that in ``trials.json``.
     """
     path = path or key_file(folder)
     key = _read(KeyRecord, path)
@@ -257,12 +290,21 @@ def read_key(folder: Path, path: Path | None = None) -> KeyRecord:
 
 
 def read_answers(path: Path, trials: TrialsRecord, *, complete: bool = True) -> AnswersRecord:
-    """Read and check a file of answers, to all trials if it has to be complete.
+    """Read and check a file of answers.
+
+    Parameters
+    ----------
+    path
+        File of the answers.
+    trials
+        Content of ``trials.json``.
+    complete
+        True if an answer to each trial is required.
 
     Raises
     ------
     TrawlError
-        Naming the trial, the key, what was found and what was expected.
+        If an answer is missing, or belongs to no trial, or has a path that is no hypothesis.
     """
     answers = _read(AnswersRecord, path)
     missing = [name for name in trials.names if name not in answers.trials]
@@ -272,6 +314,7 @@ def read_answers(path: Path, trials: TrialsRecord, *, complete: bool = True) -> 
             f'{len(trials.names)} are missing), expected an answer to each trial'
         )
     leaves = {hypothesis.path for hypothesis in trials.hypotheses}
+    # An answer may also name a node above a leaf.
     paths = leaves | {above for leaf in leaves for above in above_path(leaf)}
     for name, answer in answers.trials.items():
         if name not in trials.names:
@@ -279,12 +322,12 @@ def read_answers(path: Path, trials: TrialsRecord, *, complete: bool = True) -> 
                 f'{path}: trials: found {name}, expected names of {TRIALS_FILE}: '
                 f'{trials.names[0]} to {trials.names[-1]}'
             )
-        for own in sorted(answer.paths):
-            if own not in paths:
-                near = get_close_matches(own, paths, 1)
+        for named in sorted(answer.paths):
+            if named not in paths:
+                near = get_close_matches(named, paths, 1)
                 raise TrawlError(
-                    f'{path}: trials.{name}: found {own}, expected {NOTHING}, {SOMETHING_ELSE} or '
-                    f'a path of `hypotheses` in {TRIALS_FILE} or a part of one'
+                    f'{path}: trials.{name}: found {named}, expected {NOTHING}, {SOMETHING_ELSE} '
+                    f'or a path of `hypotheses` in {TRIALS_FILE} or a part of one'
                     + (f'; did you mean {near[0]}?' if near else '')
                 )
     return answers

@@ -1,6 +1,14 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Inputs of a tow: warp lengths, speed and heading as instruments show them, and their errors."""
+"""Measured inputs of a tow (warp lengths, speed, heading), and their corrections for errors.
+
+An input u is measured as u + e. The error e has a constant part, an offset or a fraction of the
+value (`INPUT_ERRORS`), and may have a part that varies in time, linear between knots (`Knots`).
+Corrected inputs are the measured ones minus e, so all derivatives by errors are negative.
+
+Letters in shapes: t grid points, e constant errors, m errors in all; the last axis of length 3 is
+`INPUTS`, port and starboard warp length (m) and speed (m/s).
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,9 +23,16 @@ from trawl_ros.solver.motion.course import InputPoint
 
 @dataclass(frozen=True)
 class ChannelError:
-    """Error of a channel that stays through the tow.
+    """Error of a channel that is constant through the tow: measured minus true.
 
-    It is what the instrument reads too much, as a part of the value where ``relative``.
+    Attributes
+    ----------
+    channel
+        Name of the channel.
+    std
+        Prior std, in the channel's unit, or as a fraction of the value if ``relative``.
+    relative
+        True for a scale error, False for an offset.
     """
 
     channel: str
@@ -31,7 +46,7 @@ class ChannelError:
 
 
 def channel_errors(channels: Sequence[str]) -> tuple[ChannelError, ...]:
-    """Errors of channels, by the channel table."""
+    """Return the constant errors of channels that the channel table gives a std for."""
     return tuple(
         ChannelError(name, std, relative)
         for name in channels
@@ -41,25 +56,25 @@ def channel_errors(channels: Sequence[str]) -> tuple[ChannelError, ...]:
 
 
 INPUT_ERRORS = channel_errors(INPUTS)
-"""Errors of counters and log through a tow, by the channel table."""
+"""Constant errors of the warp counters and the log through a tow, by the channel table."""
 
 
 @dataclass(frozen=True)
 class TowInputs:
-    """Inputs of a tow, smoothed, on a grid of equal steps.
+    """Measured inputs of a tow, smoothed, on an equally spaced time grid.
 
     Attributes
     ----------
     grid_s
-        Step of the grid.
+        Step of the grid, s.
     values, rates : (t, 3) arrays
         Port and starboard warp length (m) and speed (m/s), and their rates of change.
     headings, yaw_rates : (t,) arrays
-        ENU yaw (rad) without leaps, and rate of turn (rad/s).
+        Unwrapped ENU yaw (rad) and rate of turn (rad/s).
     knots
-        Of errors along the way, input by input; those without have none but `INPUT_ERRORS`.
+        Knots of the time-varying errors, one item per input that has them.
     hours
-        Since the tow began, at the first of the grid.
+        Time from the beginning of the tow to the first grid point, h.
     """
 
     grid_s: float
@@ -72,12 +87,15 @@ class TowInputs:
 
     @property
     def number_of_knots(self) -> int:
-        """Number of all knots."""
+        """Number of knots of all inputs together."""
         return sum(knots.number for knots in self.knots)
 
     @property
     def knot_places(self) -> tuple[tuple[Knots, Slice, int], ...]:
-        """Knots, their slice among all knots, and the first of their columns."""
+        """Knots of each input, their slice of all knots, and the row of their first derivative.
+
+        The rows are those of `CorrectedInputs.names`.
+        """
         places, number, column = [], 0, len(INPUT_ERRORS)
         for knots in self.knots:
             places.append((knots, slice(number, number + knots.number), column))
@@ -86,13 +104,22 @@ class TowInputs:
 
     @property
     def duration_s(self) -> float:
-        """Time from the first to the last of the grid."""
+        """Time from the first to the last grid point, s."""
         return (len(self.values) - 1) * self.grid_s
 
     def at(self, time: float) -> tuple[FloatArray, FloatArray, float, float]:
-        """Inputs (3,) and rates (3,) on the cubic through the grid, heading and rate of turn."""
+        """Interpolate the inputs at a time (s after the first grid point).
+
+        Returns
+        -------
+        tuple
+            Inputs (3,), their rates (3,), heading (rad) and rate of turn (rad/s). Inputs follow
+            the cubic Hermite spline through values and rates of the grid. Heading and rate of turn
+            are linear between grid points.
+        """
         place = min(max(time / self.grid_s, 0.0), len(self.values) - 1.0)
         first = min(int(place), len(self.values) - 2)
+        # x in [0, 1] is the place between grid points of values a, b and rates v, w, h apart.
         x, h = place - first, self.grid_s
         (a, b), (v, w) = self.values[first : first + 2], self.rates[first : first + 2]
         rise, slope = b - a, (v * (1 - x) - w * x) * (1 - x) * x * h
@@ -105,18 +132,18 @@ class TowInputs:
 
 @dataclass(frozen=True)
 class MeanInputs:
-    """Inputs averaged over a time.
+    """Corrected inputs averaged over a time.
 
     Attributes
     ----------
     values : (3,) array
         Warp lengths (m) and speed (m/s).
     by_errors : (e, 3) array
-        Derivatives by a std of each of `INPUT_ERRORS`.
+        Derivatives by each of `INPUT_ERRORS`, per std.
     by_knots
-        Derivatives (number,) of each input by its errors at all knots, input by input.
+        Derivatives (number of knots,) of each input by its own errors (SI) at its knots.
     heading, hours
-        ENU yaw (rad), and time since the tow began.
+        ENU yaw (rad), and time (h) since the tow began.
     """
 
     values: FloatArray
@@ -128,18 +155,20 @@ class MeanInputs:
 
 @dataclass(frozen=True)
 class CorrectedInputs:
-    """Inputs of a tow, corrected for errors of their instruments, with their derivatives.
+    """Inputs of a tow, corrected for errors of the instruments, and derivatives by these errors.
+
+    A call returns the corrected inputs at a time, as the motion solver needs them.
 
     Attributes
     ----------
     inputs
-        As the instruments show them.
+        Measured inputs.
     errors : (e,) array
-        Errors of `INPUT_ERRORS`, in std.
+        Values of `INPUT_ERRORS`, in std.
     drifts : (knots,) array
-        Errors at all knots, SI.
+        Time-varying errors at all knots, m or m/s.
     begin
-        Time (s) of the tow at which the motion is begun.
+        Time (s) of the tow at which the simulated motion begins.
     """
 
     inputs: TowInputs
@@ -149,7 +178,11 @@ class CorrectedInputs:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the additions to the inputs by which a motion is differentiated."""
+        """Names (m) of the errors by which a motion is differentiated.
+
+        A knot's error affects the gear only for a while, so the knots of an input take turns in a
+        fixed number of names (`Knots.columns`).
+        """
         return (
             *(error.name for error in INPUT_ERRORS),
             *(
@@ -160,30 +193,30 @@ class CorrectedInputs:
         )
 
     def __call__(self, time: float) -> InputPoint:
-        """Inputs so many seconds after the motion began."""
+        """Return the corrected inputs at a time, s after the motion began."""
         time += self.begin
-        shown, rates, heading, yaw_rate = self.inputs.at(time)
-        additions, paces = self._additions(time, shown, rates)
-        value, rate = shown.copy(), rates.copy()
-        stays = len(INPUT_ERRORS)
-        value += self.errors @ additions[:stays]
-        rate += self.errors @ paces[:stays]
+        measured, rates, heading, yaw_rate = self.inputs.at(time)
+        by_errors, rates_by_errors = self._derivatives(time, measured, rates)
+        value, rate = measured.copy(), rates.copy()
+        constant = len(INPUT_ERRORS)
+        value += self.errors @ by_errors[:constant]
+        rate += self.errors @ rates_by_errors[:constant]
         for knots, own, _ in self.inputs.knot_places:
             column = INPUTS.index(knots.channel)
             value[column] -= knots.hats(time) @ self.drifts[own]
             rate[column] -= knots.hat_rates(time) @ self.drifts[own]
         hours = self.inputs.hours + time / 3600.0
-        return InputPoint(value, rate, heading, yaw_rate, hours, additions, paces)
+        return InputPoint(value, rate, heading, yaw_rate, hours, by_errors, rates_by_errors)
 
     def mean(self, begin: float, end: float) -> MeanInputs:
-        """Mean from one time (s since the tow began) to another."""
+        """Return the mean of the corrected inputs between two times, s since the tow began."""
         inputs, step = self.inputs, self.inputs.grid_s
         first = min(max(round(begin / step), 0), len(inputs.values) - 1)
         last = min(max(round(end / step), first), len(inputs.values) - 1)
         own = slice(first, last + 1)
-        shown = inputs.values[own].mean(axis=0)
-        by_errors, by_knots = _by_errors(shown, 1.0), {}
-        value = shown + self.errors @ by_errors
+        measured = inputs.values[own].mean(axis=0)
+        by_errors, by_knots = _by_constant_errors(measured, 1.0), {}
+        value = measured + self.errors @ by_errors
         for knots, place, _ in inputs.knot_places:
             times: FloatArray = step * np.arange(first, last + 1, dtype=np.float64)
             by_knots[knots.channel] = -hats(times, knots.number, knots.spacing_s).mean(axis=0)
@@ -192,45 +225,47 @@ class CorrectedInputs:
         hours = inputs.hours + 0.5 * step * (first + last) / 3600.0
         return MeanInputs(value, by_errors, by_knots, heading, hours)
 
-    def _additions(
-        self, time: float, shown: FloatArray, rates: FloatArray
+    def _derivatives(
+        self, time: float, measured: FloatArray, rates: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Additions to inputs and rates, both (m, 3), by a unit of each parameter.
+        """Return derivatives of corrected inputs and of their rates, both (m, 3), by `names`.
 
-        What is shown too large is less in truth.
+        Those by constant errors are per std, those by knots per SI unit of the error.
         """
-        additions, paces = np.zeros((2, len(self.names), 3))
-        additions[: len(INPUT_ERRORS)] = _by_errors(shown, 1.0)
-        paces[: len(INPUT_ERRORS)] = _by_errors(rates, 0.0)
+        by_errors, rates_by_errors = np.zeros((2, len(self.names), 3))
+        by_errors[: len(INPUT_ERRORS)] = _by_constant_errors(measured, 1.0)
+        # A constant offset does not change a rate; a scale error does.
+        rates_by_errors[: len(INPUT_ERRORS)] = _by_constant_errors(rates, 0.0)
         for knots, _, first in self.inputs.knot_places:
             column = INPUTS.index(knots.channel)
             values, slopes = knots.hats(time), knots.hat_rates(time)
             for knot in knots.acting(time):
                 row = first + knot % knots.columns
-                additions[row, column], paces[row, column] = -values[knot], -slopes[knot]
-        return additions, paces
+                by_errors[row, column] = -values[knot]
+                rates_by_errors[row, column] = -slopes[knot]
+        return by_errors, rates_by_errors
 
 
 def corrected(shown: FloatArray, errors: FloatArray) -> FloatArray:
-    """Inputs (3,) as shown, corrected for errors (e,) of `INPUT_ERRORS`, in std."""
-    true: FloatArray = shown + errors @ _by_errors(shown, 1.0)
+    """Return measured inputs (3,), corrected for errors (e,) of `INPUT_ERRORS` in std."""
+    true: FloatArray = shown + errors @ _by_constant_errors(shown, 1.0)
     return true
 
 
-def _by_errors(values: FloatArray, offset: float) -> FloatArray:
-    """Additions (e, 3) to values (3,) by a std of each of `INPUT_ERRORS`.
+def _by_constant_errors(values: FloatArray, offset: float) -> FloatArray:
+    """Return derivatives (e, 3) of corrected inputs, or of their rates, by `INPUT_ERRORS`, per std.
 
-    Those that are no part of a value add to ``offset``. What is shown too large is less in truth.
+    ``values`` (3,) are measured inputs and ``offset`` is 1, or they are rates and it is 0.
     """
-    additions = np.zeros((len(INPUT_ERRORS), 3))
+    derivatives = np.zeros((len(INPUT_ERRORS), 3))
     for row, error in enumerate(INPUT_ERRORS):
         column = INPUTS.index(error.channel)
-        additions[row, column] = -error.std * (values[column] if error.relative else offset)
-    return additions
+        derivatives[row, column] = -error.std * (values[column] if error.relative else offset)
+    return derivatives
 
 
 def without_errors(inputs: TowInputs, begin: float = 0.0) -> CorrectedInputs:
-    """Inputs taken as they are shown."""
+    """Return the measured inputs with all errors taken as 0."""
     none = np.zeros(inputs.number_of_knots)
     return CorrectedInputs(inputs, np.zeros(len(INPUT_ERRORS)), none, begin)
 
@@ -238,12 +273,24 @@ def without_errors(inputs: TowInputs, begin: float = 0.0) -> CorrectedInputs:
 def on_grid(
     times: FloatArray, values: FloatArray, grid: FloatArray, reach_s: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Smooth readings (n,) at times (n,) on a grid (t,), by local lines with tricube weights.
+    """Smooth readings onto a grid by local linear regression with tricube weights.
+
+    This is LOESS without its robust step (Cleveland 1979), with a fixed bandwidth.
+
+    Parameters
+    ----------
+    times, values
+        Times (n,), s, and readings (n,).
+    grid
+        Times (t,) of the grid, s.
+    reach_s
+        Half-width of the window, s. Where it holds fewer than four readings, four
+        neighbouring ones are used.
 
     Returns
     -------
     tuple
-        Values and rates (t,), by the readings within ``reach_s``, or by the nearest four.
+        Values (t,) and rates (t,), per s.
     """
     first, last = np.searchsorted(times, (grid - reach_s, grid + reach_s))
     few = last - first < 4
@@ -252,18 +299,22 @@ def on_grid(
     places = first[:, None] + np.arange(np.max(last - first))
     inside = places < last[:, None]
     places = np.minimum(places, len(times) - 1)
-    away, near = times[places] - grid[:, None], values[places]
-    far = 1.0001 * np.maximum(reach_s, np.max(np.abs(away), axis=1, where=inside, initial=0.0))
-    share = np.where(inside, np.abs(away) / far[:, None], 1.0)
-    weights = (1.0 - share**3) ** 3
+    offsets, neighbours = times[places] - grid[:, None], values[places]
+    distances = np.abs(offsets)
+    # The factor leaves the farthest reading a small weight.
+    bandwidth = 1.0001 * np.maximum(reach_s, np.max(distances, axis=1, where=inside, initial=0.0))
+    # A relative distance of 1 gives weight 0 to the padding.
+    relative = np.where(inside, distances / bandwidth[:, None], 1.0)
+    weights = (1.0 - relative**3) ** 3
     weights /= np.sum(weights, axis=1, keepdims=True)
-    middle, mean = np.sum(weights * away, axis=1), np.sum(weights * near, axis=1)
-    away -= middle[:, None]
-    square = np.sum(weights * away**2, axis=1)
-    rates = np.sum(weights * away * near, axis=1) / np.where(square > 0.0, square, 1.0)
-    return mean - rates * middle, rates
+    mean_offset, mean = np.sum(weights * offsets, axis=1), np.sum(weights * neighbours, axis=1)
+    offsets -= mean_offset[:, None]
+    square = np.sum(weights * offsets**2, axis=1)
+    rates = np.sum(weights * offsets * neighbours, axis=1) / np.where(square > 0.0, square, 1.0)
+    # The line passes through the mean at the mean offset; its value at the grid point is wanted.
+    return mean - rates * mean_offset, rates
 
 
 def stacked(series: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, FloatArray]:
-    """Values and rates (t, m) of m series."""
+    """Stack m series of values (t,) and rates (t,) as columns, both (t, m)."""
     return np.column_stack([s[0] for s in series]), np.column_stack([s[1] for s in series])
