@@ -262,7 +262,16 @@ def node_section(node: str) -> str:
 
 def page() -> str:
     """Text of the page."""
-    heads = ('topic', 'type', 'frame', 'rate', 'units', 'where a value is missing', 'durability', 'content')
+    heads = (
+        'topic',
+        'type',
+        'frame',
+        'rate',
+        'units',
+        'where a value is missing',
+        'durability',
+        'content',
+    )
     topics = [
         f'### {title}\n\n{table(heads, map(topic_row, rows))}' for title, rows in SECTIONS.items()
     ]
