@@ -32,7 +32,7 @@ MAX_ELIMINATIONS = 50
 """Safeguard on the number of eliminations; the last one uses the final weights."""
 
 WEIGHT_TOLERANCE = 1e-5
-"""Change of the weights below which they have converged. The error of the cost is of its square."""
+"""Change of the weights below which they have converged. The cost errs by about its square."""
 
 MAX_STEP_RATIO = 0.9
 """Ratio of successive steps of the weights up to which their limit is extrapolated."""
@@ -199,8 +199,8 @@ def _extrapolated(
     Returns
     -------
     tuple
-        Weights, extrapolated after every second step, and the step to compare the next one with.
-        It is None after an extrapolation, which starts a new pair of steps.
+        Weights, and the step to compare the next one with. The weights are extrapolated if the
+        two steps point the same way and shrink. The step is then None, and a new pair begins.
     """
     if previous_step is None:
         return updated, step

@@ -15,6 +15,7 @@ from trawl_ros.report.style import FAINT, MEASURED, SECOND, quiet
 PLAN_COLOUR, SWEEP_COLOUR, PRIOR_COLOUR = MEASURED, SECOND, FAINT
 PAPER_CHANNELS_COLOUR = '#8c564b'
 SPREAD_COLOUR = '#e3e6e8'
+"""Colour of the line from the smallest to the largest std of a quantity."""
 
 MARKER_SHIFT_M_S = 0.016
 """Shift of markers along the speed axis that keeps equal and unequal warps apart, m/s."""
