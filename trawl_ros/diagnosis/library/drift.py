@@ -106,8 +106,8 @@ def _drift(
             Parameter('first', unit, 0.0, -bound, bound, usual),
         ),
         excited_by='time in the tow',
-        direct='Tow one state at the beginning of a tow and again at its end: what drifts then '
-        'reads otherwise, and the gear does not.',
+        direct='Tow one state at the beginning of a tow and again at its end: a sensor that '
+        'drifts then reads differently, and the gear is the same.',
         instrument_in_words=words,
         channels=channels,
         inputs=inputs,

@@ -90,7 +90,7 @@ def _draw_states(axes: Axes, plan: TrialPlan) -> None:
         )
     axes.set_xlabel('warp length / m')
     axes.set_ylabel('speed / (m/s)')
-    axes.set_title('Where it goes (large: twice)', fontsize='medium')
+    axes.set_title('Planned states (large: visited twice)', fontsize='medium')
     axes.margins(0.08)
     quiet(axes)
     axes.legend(fontsize='small', loc='upper center', bbox_to_anchor=(0.5, -0.12), ncols=3)

@@ -91,14 +91,14 @@ def motion_lines(report: Report) -> list[str]:
     ratio = f', a ratio of {means["ratio"]:.2f}' if report.windows else ''
     windows = f'{means["windows"]:.3f} by the windows, ' if report.windows else ''
     lines = [
-        f'Std over that of the prior, geometric mean: {windows}{means["whole"]:.3f} by all of the '
+        f'Std over that of the prior, geometric mean: {windows}{means["whole"]:.3f} by the whole '
         f'tow{ratio}.',
         f'{_held_out(report, motion)}',
-        f'{"At rest" if fit.converged else "NOT at rest"}: {fit.reason}. Whitened residuals have '
-        f'{fit.misfit:.2f} of their std.',
+        f'{"Converged" if fit.converged else "NOT converged"}: {fit.reason}. Residuals are '
+        f'{fit.misfit:.2f} times as large as their stated errors.',
     ]
     if report.windows:
-        lines += [f'By all of the tow. {line}' for line in net_lines(fit.net)]
+        lines += [f'By the whole tow. {line}' for line in net_lines(fit.net)]
     for name, part in motion.left_out:
         lines.append(f'Left out: {name}, {part.begin:.0f} to {part.end:.0f} s: {part.why}.')
     if poor := motion.poor:
