@@ -10,7 +10,7 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.least_squares.descent import DescentOptions, descend
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.nuisances import layout_of
-from trawl_ros.estimation.motion.search import FINDINGS, MotionSearch, without
+from trawl_ros.estimation.motion.search import PREDICTIONS_TO_FIND_ERRORS, MotionSearch, without
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.lab.benchmark.motion import course_tow
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -59,7 +59,7 @@ def test_stretches_that_are_lost_late_stay_lost(coarse, gear):
         search.tows = [replace(search.tows[0], means=towed.values)]
         search.begin()
         assert list(search.linear[0].towed) == [True, False, False, False]
-        search.found = 0 if regain else FINDINGS
+        search.found = 0 if regain else PREDICTIONS_TO_FIND_ERRORS
         descend(search, DescentOptions(iterations=2, attempts=4, tolerance=0.0))
         kept[regain] = search.linear[0]
     assert kept[True].towed.all()

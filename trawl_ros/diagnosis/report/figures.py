@@ -20,7 +20,7 @@ BEGAN = 'What began during the tow'
 MOST_Z = 8.0
 """Colours end here."""
 
-BARS, LEAST = 10, 0.005
+MAX_BARS, MIN_SHOWN_PROBABILITY = 10, 0.005
 """Largest number of causes that are drawn, and their least probability."""
 
 
@@ -106,8 +106,8 @@ def probability_figure(posterior: Posterior) -> Figure:
     leaves, nodes = posterior.leaves, posterior.nodes
     rows = [
         (_words(name), probability, nodes[posterior.entry(name).entry.node.path])
-        for name, probability in list(leaves.items())[:BARS]
-        if nodes[posterior.entry(name).entry.node.path] > LEAST
+        for name, probability in list(leaves.items())[:MAX_BARS]
+        if nodes[posterior.entry(name).entry.node.path] > MIN_SHOWN_PROBABILITY
     ]
     rows += [
         ('something else', posterior.unknown, 0.0), ('boards alone', posterior.nothing, 0.0)

@@ -17,7 +17,7 @@ DETERMINED_FRACTION = 0.2
 DETERMINED_SHRINK = 0.5
 NAMED_SHARE = 0.4
 
-UNKNOWN = 1e-7
+UNKNOWN_SINGULAR_SHARE = 1e-7
 """Singular value, over the largest, up to which the data know nothing: rounding makes as much."""
 
 
@@ -100,7 +100,7 @@ class Posterior:
     def condition_number(self) -> float:
         """Condition number: largest over smallest singular value, infinite where one is zero."""
         smallest = self.singular[-1]
-        if smallest <= UNKNOWN * self.singular[0]:
+        if smallest <= UNKNOWN_SINGULAR_SHARE * self.singular[0]:
             return float('inf')
         return float(self.singular[0] / smallest)
 
@@ -220,7 +220,7 @@ def undetermined(
         order = np.argsort(-np.abs(weights))
         among = [names[i] for i in order if abs(weights[i]) >= NAMED_SHARE]
         information = float(scaled[:, column] @ scaled[:, column])
-        known = information > (UNKNOWN * knowledge.singular[0]) ** 2
+        known = information > (UNKNOWN_SINGULAR_SHARE * knowledge.singular[0]) ** 2
         std = information**-0.5 if known else float('inf')
         combinations.append(Combination(tuple(among or [names[order[0]]]), weights, std))
     return tuple(sorted(combinations, key=lambda combination: -combination.std))

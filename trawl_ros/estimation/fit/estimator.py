@@ -125,7 +125,7 @@ class Estimator:
         innovation = self._innovation(linear)
         self._fit = replace(self._fit, windows=(*self._fit.windows, linear))
         rest, obstacle = self._descend(self.options.relinearise, self.options.iterations_per_window)
-        reason = f'the last step was {rest.size:.2g} std; the fit comes to rest at the end'
+        reason = f'the last step was {rest.size:.2g} std; the fit converges at the end'
         return self._publish(innovation, False, obstacle or reason)
 
     def finish(self) -> Estimate | None:

@@ -33,10 +33,10 @@ from trawl_ros.estimation.motion.weights import robust_factors
 from trawl_ros.solver.motion.guide import TowGuide
 from trawl_ros.solver.motion.parameters import NET
 
-COOLER = 0.4
+COOLING_FACTOR = 0.4
 """Factor from step to step on the errors of the data while these are taken for too large."""
 
-FINDINGS = 3
+PREDICTIONS_TO_FIND_ERRORS = 3
 """Predictions after which weights and sizes of the errors are found, before they stay; and so do
 stretches that are lost."""
 
@@ -150,8 +150,8 @@ class MotionSearch:
         """Return the linear problem here, with weights and sizes of the errors found again."""
         self.iteration += 1
         problem, data = self.problem(self.sizes), self.data(self.linear, self.here)
-        self.temper = max(1.0, min(COOLER * self.temper, misfit(data, problem, self.here)))
-        if self.is_final and self.found < FINDINGS:
+        self.temper = max(1.0, min(COOLING_FACTOR * self.temper, misfit(data, problem, self.here)))
+        if self.is_final and self.found < PREDICTIONS_TO_FIND_ERRORS:
             self.found += 1
             self.sizes = self.find(self.sizes)
         problem = self.problem(self.tempered)
@@ -241,7 +241,9 @@ class MotionSearch:
             return 'every further step leads to where the model cannot be towed'
         if not self.is_lower(tried, place, self.tempered):
             return NO_STEP
-        self.linear = tried if self.found < FINDINGS else without(tried, self.linear)
+        self.linear = (
+            tried if self.found < PREDICTIONS_TO_FIND_ERRORS else without(tried, self.linear)
+        )
         self.here, self.guides = list(place), dict(self.last_guides)
         return ''
 

@@ -25,7 +25,7 @@ from trawl_ros.estimation.motion.growing import GrowingLinearisation
 from trawl_ros.estimation.motion.nuisances import layout_of, place_at
 from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.estimation.motion.search import (
-    COOLER,
+    COOLING_FACTOR,
     ROUNDED,
     MotionSearch,
     is_lost,
@@ -195,7 +195,7 @@ class MotionTracker:
         if found is None or waits:
             return None
         if found.moved < NEAR:
-            self._cool(COOLER * self._temper)
+            self._cool(COOLING_FACTOR * self._temper)
             return None
         problem = search.problem(self._sizes.tempered(self._temper))
         there = problem.target(self._damping.value)
@@ -221,7 +221,7 @@ class MotionTracker:
             self._damping.refuse()
             if self._refused >= self._options.attempts:
                 self._refused, self._damping = 0, Damping()
-                self._cool(COOLER * self._temper)
+                self._cool(COOLING_FACTOR * self._temper)
                 self._again = GROWN * sum(map(len, search.tows))
             return
         self._here, self._refused = tried, 0
@@ -229,7 +229,7 @@ class MotionTracker:
         data = search.data(linear, there)
         problem = linear_problem(data, there, self._prior, self._sizes, self._options.largest_step)
         rest = misfit(data, problem, _eliminated(search, problem))
-        self._cool(min(COOLER * self._temper, rest))
+        self._cool(min(COOLING_FACTOR * self._temper, rest))
 
     def _cool(self, temper: float) -> None:
         """Take errors of stretches for so many times as large, and no less than at the end."""

@@ -12,7 +12,7 @@ from trawl_ros.lab.report.measured import MeasuredValue, TargetRange, between
 
 EXACT = 'binomial 95 % interval (Clopper and Pearson)'
 AGAIN = 'interval by drawing trials again'
-DRAWS, SEED = 1000, 7
+RESAMPLINGS, RESAMPLING_SEED = 1000, 7
 
 Figures = Callable[[IntArray], FloatArray]
 """Figures (n,) of the trials that are chosen by their places, some of them several times."""
@@ -23,8 +23,8 @@ def interval(figures: Figures, number: int) -> tuple[FloatArray, FloatArray]:
     if number < 2:
         nothing = np.full(np.shape(figures(np.arange(number))), np.nan)
         return nothing, nothing
-    rng = np.random.default_rng(SEED)
-    found = np.array([figures(rng.integers(number, size=number)) for _ in range(DRAWS)])
+    rng = np.random.default_rng(RESAMPLING_SEED)
+    found = np.array([figures(rng.integers(number, size=number)) for _ in range(RESAMPLINGS)])
     low, high = np.percentile(found, (2.5, 97.5), axis=0)
     return low, high
 

@@ -41,7 +41,7 @@ bracket carries it (both in chords), and along the span (in spans)."""
 SOFT_BOARD_PENALTY = 1e4
 """Merit (squared rotations) of a board that is too soft: far above that of stiff ones."""
 
-SHRINKING = 0.3
+REACH_SHRINK_FACTOR = 0.3
 """Factor on the trust region's reach after a step to a worse rigging or to one without a shape."""
 
 CONVERGED_GAIN = 1e-3
@@ -318,7 +318,7 @@ def _searched(held: HeldGear, start: FloatArray, unknown: float) -> FloatArray:
         try:
             there = held.boards(trial)
         except NoSteadyState:
-            held.states, reach = states, SHRINKING * reach
+            held.states, reach = states, REACH_SHRINK_FACTOR * reach
             continue
         worth = _merit(held, there, trial, unknown)
         if worth < value:
@@ -327,7 +327,7 @@ def _searched(held: HeldGear, start: FloatArray, unknown: float) -> FloatArray:
             if converged:
                 break
         else:
-            held.states, reach = states, SHRINKING * reach
+            held.states, reach = states, REACH_SHRINK_FACTOR * reach
     held.states = states
     return points
 

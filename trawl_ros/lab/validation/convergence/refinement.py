@@ -27,7 +27,7 @@ from trawl_ros.solver.operating_point import OperatingPoint
 SPEED = 2.1
 """Speed through the water, m/s."""
 
-STRIDE = 1.15
+MAX_LENGTH_RATIO = 1.15
 """Largest ratio of warp lengths between a state and its start."""
 
 AROUND_ZERO = ('pitch', 'slip')
@@ -91,8 +91,8 @@ def row(name: str, gear: GearRecord, lengths: tuple[float, ...]) -> RefinementRo
     first = _solved(model, lengths[middle], None)
     for k in sorted(range(len(lengths)), key=lambda k: abs(k - middle)):
         found = first
-        # A fine net follows small changes of length more surely than it settles anew.
-        count = int(np.ceil(abs(np.log(lengths[k] / lengths[middle])) / np.log(STRIDE)))
+        # A fine net follows small changes of length more surely than it settles again.
+        count = int(np.ceil(abs(np.log(lengths[k] / lengths[middle])) / np.log(MAX_LENGTH_RATIO)))
         for length in np.geomspace(lengths[middle], lengths[k], count + 1)[1:]:
             found = _solved(model, float(length), found) if found is not None else None
         found = found or _solved(model, lengths[k], None)
