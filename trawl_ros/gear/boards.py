@@ -22,9 +22,13 @@ class StartRecord(Record):
     """Prior of the coefficients: start values, spread and bounds in the order of eq. 36."""
 
     start: tuple[Coefficient, ...]
+    """Start values."""
     std: tuple[Positive, ...]
+    """Standard deviations."""
     low: tuple[float, ...]
+    """Lower bounds."""
     high: tuple[float, ...]
+    """Upper bounds."""
 
     @model_validator(mode='after')
     def _twelve(self) -> 'StartRecord':
@@ -65,27 +69,39 @@ class InertiaRecord(Record):
     """Moments and products of inertia about the board's axes (Table 1)."""
 
     xx_kg_m2: Positive
+    """Moment about the chord."""
     yy_kg_m2: Positive
+    """Moment about the normal."""
     zz_kg_m2: Positive
+    """Moment about the span."""
     xy_kg_m2: float
+    """Product of inertia."""
     xz_kg_m2: float
+    """Product of inertia."""
     yz_kg_m2: float
+    """Product of inertia."""
 
 
 class FasteningRecord(Record):
     """Fastening points in the outward board frame, whose origin is the centre of gravity."""
 
     warp_m: Vector
+    """Hole for the warp, which may be on a bracket off the plate."""
     upper_bridle_m: Vector
+    """Upper bridle point."""
     lower_bridle_m: Vector
+    """Lower bridle point."""
 
 
 class InstallationRecord(Record):
     """Installation angles: rotations of the board about its z, y, x axes against its rigging."""
 
     epsilon_deg: Degrees = 0.0
+    """Turn about z, along the span: changes the attack angle."""
     zeta_deg: Degrees = 0.0
+    """Turn about y, normal to the board: changes the pitch."""
     eta_deg: Degrees = 0.0
+    """Turn about x, along the chord: changes the lean."""
 
 
 class PolarPointRecord(Record):
@@ -194,17 +210,31 @@ class BoardRecord(Record):
     """
 
     mass_kg: Positive
+    """Mass."""
     volume_m3: Positive
+    """Displaced volume."""
     inertia: InertiaRecord
+    """Inertia about the centre of gravity; default that of an even plate."""
     area_m2: Positive
+    """Area to which coefficients refer."""
     span_m: Positive
+    """Height."""
     chord_m: Positive
+    """Length."""
     law: BoardLawRecord | None = None
+    """Law in place of eq. 14."""
     coefficients: CoefficientsRecord
+    """a1 to c6 of eq. 14, per radian; needed without a `law`, else corrections to it."""
     rotary_slope: NotNegative
+    """Slope of the lift by which a turning board resists; needed without a `law`, else 2.5."""
     fastening: FasteningRecord
+    """Fastening points."""
     installation: InstallationRecord = InstallationRecord()
+    """Turn of the board against its fastening points."""
     added_mass_kg: tuple[NotNegative, NotNegative, NotNegative]
+    """Added mass along x, y and z; default that of a plate, by strips with the correction of
+    Pabst.
+    """
 
     @model_validator(mode='before')
     @classmethod

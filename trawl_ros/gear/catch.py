@@ -20,16 +20,16 @@ A pressure p in a tube of radius r causes tensions p r around and p r / 2 along 
 
 
 class CatchRecord(Record):
-    """Catch in the codend.
-
-    ``density_kg_m3`` is that of fish, ``bulk_kg_m3`` the mass of fish in a cubic metre of the full
-    codend; the remainder is water. ``drag_coefficient`` is C_D of the catch on its cross-section.
-    """
+    """Catch in the codend."""
 
     mass_kg: Annotated[float, Field(gt=0, le=1e6)]
+    """Fish, in air."""
     density_kg_m3: Annotated[float, Field(ge=900, le=1300)] = 1050.0
+    """Density of the fish; those of the default sink."""
     bulk_kg_m3: Annotated[float, Field(ge=100, le=1000)] = 800.0
+    """Fish in a cubic metre of the full codend; water is between them."""
     drag_coefficient: NotNegative = 1.4
+    """C_D of the catch on its cross-section."""
 
     @model_validator(mode='after')
     def _fits(self) -> 'CatchRecord':

@@ -60,20 +60,41 @@ class PieceRecord(Record):
     """
 
     part: Part
+    """Part of the net."""
     panel: Panel
+    """Panel; `all` is what goes all around, `side_upper` and `side_lower` are two panels or
+    wings of a side.
+    """
     section: str = ''
+    """Pieces of the body with one name lie side by side and are equally long."""
     mesh_mm: Annotated[float, Field(ge=2, le=200_000)]
+    """Stretched mesh; of `ropes`, the length of frame per rope."""
     front_meshes: Meshes
+    """Meshes across the front edge of one panel, of one wing, or all around; needed without a
+    `cut`.
+    """
     back_meshes: Meshes
+    """The same at the back edge; needed without a `cut`."""
     long_meshes: Annotated[float, Field(gt=0, le=100_000)]
+    """Meshes along."""
     rtex: Annotated[float, Field(gt=0, le=1e7)] | None = None
+    """Mass of the twine, g/km; this or the diameter is needed."""
     twine_diameter_mm: Annotated[float, Field(gt=0, le=100)] | None = None
+    """Diameter of the twine."""
     material: Material
+    """Fibre."""
     knots: Literal['knotted', 'knotless'] = 'knotted'
+    """Knots."""
     twines: Literal[1, 2] = 1
+    """Twines in each bar."""
     pieces: Literal[1, 2] | None = None
+    """1 for a wing that is one piece over the whole panel and reaches ahead of the others."""
     cut: str | None = None
+    """Cutting rate, such as AB, AN, 1N2B or 1T2B. It gives the count of an edge that is left
+    out, else is checked.
+    """
     orientation: Orientation = 'T0'
+    """Way of the meshes. Square meshes are counted by their bars, `ropes` by their number."""
 
     @model_validator(mode='before')
     @classmethod
@@ -187,8 +208,11 @@ class HangingRecord(Record):
     """
 
     bosom: Annotated[float, Field(gt=0.1, le=1)] = 0.5
+    """Rope over stretched netting along the bosom."""
     wing_edge: Annotated[float, Field(gt=0.3, le=1)] = 0.96
+    """The same along the wing edges, unless the rope has a length."""
     wing_tip: Annotated[float, Field(gt=0, le=1)] = 0.3
+    """The same across the gathered wing tip."""
 
 
 class NetPlanRecord(Record):
@@ -200,8 +224,11 @@ class NetPlanRecord(Record):
     """
 
     hanging: HangingRecord = HangingRecord()
+    """Hanging ratios of the ropes."""
     shielded: bool = True
+    """False leaves all drag of single twines and knots."""
     pieces: Annotated[tuple[PieceRecord, ...], Field(min_length=2, max_length=200)]
+    """Pieces, from the wings to the codend."""
 
     @model_validator(mode='after')
     def _joins(self) -> 'NetPlanRecord':

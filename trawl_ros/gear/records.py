@@ -45,44 +45,52 @@ class ShipRecord(Record):
     """
 
     block_spacing_m: Annotated[float, Field(gt=0, le=50)] | None = None
+    """Distance of the two towing blocks; needed unless the file has a `pair`."""
     max_acceleration_m_s2: Annotated[float, Field(gt=0, le=1)]
+    """Most by which the speed of the ship changes."""
     max_turn_acceleration_deg_s2: Annotated[float, Field(gt=0, le=5)]
+    """Most by which her rate of turn changes."""
 
 
 class WinchRecord(Record):
     """Limits of a winch's speed and acceleration."""
 
     max_speed_m_s: Annotated[float, Field(gt=0, le=5)]
+    """Greatest speed of the wire."""
     max_acceleration_m_s2: Annotated[float, Field(gt=0, le=5)]
+    """Greatest acceleration of the wire."""
 
 
 class KiteRecord(Record):
-    """Canvas kite on the headrope's centre.
-
-    Its legs hold it at ``setting_deg`` to the flow. With ``chord_m`` it pitches with the line from
-    the headrope to a point this length of stretched netting behind it. The normal coefficient is
-    ``normal_slope`` per radian of attack, at most ``normal_limit``.
-    """
+    """Canvas kite on the headrope's centre."""
 
     area_m2: Annotated[float, Field(gt=0, le=1000)]
+    """Area of the canvas."""
     mass_kg: NotNegative
+    """Mass with its ropes."""
     volume_m3: NotNegative
+    """Displaced volume of canvas and ropes."""
     setting_deg: Degrees
+    """Angle to the flow at which its legs hold it."""
     chord_m: Positive | None = None
+    """With it, the kite pitches with the line to a point this length of stretched netting behind
+    the headrope.
+    """
     normal_slope: NotNegative
+    """Slope k of the normal coefficient, per radian of attack."""
     normal_limit: Positive
+    """Limit N of the normal coefficient."""
     drag_base: NotNegative
+    """Drag coefficient C_0 at zero attack."""
 
 
 class PairRecord(Record):
-    """Pair trawl: two ships abreast, ``distance_m`` apart, that tow one net without boards.
-
-    ``plate_mass_kg`` is the mass of the triangular plate, with its shackles, between the warp of
-    either ship and the bridles. It has no drag.
-    """
+    """Pair trawl: two ships abreast that tow one net without boards; its plates have no drag."""
 
     distance_m: Annotated[float, Field(gt=10, le=2000)]
+    """Distance of the two ships, from block to block."""
     plate_mass_kg: Annotated[float, Field(gt=1, le=5000)] = 60.0
+    """Mass of the steel plate, with shackles, between a warp and its bridles."""
 
 
 def towing_plate(pair: PairRecord) -> BoardRecord:
@@ -113,16 +121,22 @@ class ClumpRecord(Record):
     """Weight at each lower wing tip."""
 
     weight_in_water_n: NotNegative
+    """Weight in water, of each."""
     density_kg_m3: Annotated[float, Field(gt=1100, le=25_000)]
+    """Density of its material."""
     drag_area_m2: NotNegative
+    """Drag coefficient times area."""
 
 
 class FloatRecord(Record):
     """Floats at each upper wing tip."""
 
     buoyancy_n: NotNegative
+    """Buoyancy on each side, less the weight of the floats."""
     density_kg_m3: Annotated[float, Field(ge=1, lt=900)]
+    """Mass of the floats over their volume."""
     drag_area_m2: NotNegative
+    """Drag coefficient times area."""
 
 
 class SourceRecord(Record):
@@ -144,36 +158,15 @@ class EffectRecord(Record):
     """Effect beyond the paper's model: its name in the catalogue, and its parameters."""
 
     name: str
+    """Name of the effect, as in `trawl effects`."""
     values: Numbers = FrozenDict()
+    """Its parameters by name."""
     provenance: ProvenanceRecord | None = None
+    """Bags and evidence by which a diagnosis found it; written by `trawl diagnose`."""
 
 
 class GearRecord(Record):
     """Gear: the records of a whole gear file.
-
-    Attributes
-    ----------
-    name
-        Name of the gear.
-    water, ship, winch
-        Density, gravity, current and temperature; towing blocks; speed of the winches.
-    warp, bridle, headrope, footrope
-        Ropes: lengths (m), diameters (m), weight in water (N/m), stiffness EA (N), drag.
-    board
-        Otter board: mass (kg), inertia (kg m²), area (m²), coefficients of eq. 14, fastening (m).
-        For a pair trawl it is the plate to which warp and bridles are shackled.
-    pair
-        Distance of the two ships (m) that tow a gear without boards; None for one ship.
-    netting
-        Sections of the net, and its numerical mesh.
-    kite, clump, floats
-        Kite, weights and floats of the mouth.
-    catch
-        Catch in the codend; None for an empty one.
-    identification
-        Start values, standard deviations and bounds of the twelve coefficients.
-    effects
-        Effects beyond the model, at most 20.
 
     Examples
     --------
@@ -184,29 +177,50 @@ class GearRecord(Record):
     """
 
     name: str
+    """Name of the gear."""
     water: WaterRecord
+    """Density, gravity, current and temperature of the sea."""
     ship: ShipRecord
+    """Towing blocks and limits of the ship."""
     winch: WinchRecord
+    """Limits of either winch."""
     warp: WarpRecord
+    """Warps, whose length is commanded."""
     bridle: BridleRecord
+    """Make of all bridles."""
     board: BoardRecord
+    """Otter boards."""
     pair: PairRecord | None = None
+    """Two ships in place of boards."""
     headrope: FrameRopeRecord
+    """Headrope."""
     footrope: FrameRopeRecord
+    """Footrope with its chain."""
     netting: NettingRecord
+    """Net: sections or a plan, and its numerical mesh."""
     side_rope: FrameRopeRecord | None = None
+    """Rope from upper to lower wing tip; default as the headrope."""
     kite: KiteRecord | None = None
+    """Kite on the middle of the headrope."""
     catch: CatchRecord | None = None
+    """Catch in the codend."""
     clump: ClumpRecord = ClumpRecord(weight_in_water_n=0.0, density_kg_m3=7800.0, drag_area_m2=0.0)
+    """Weight at each lower wing tip."""
     floats: FloatRecord = FloatRecord(buoyancy_n=0.0, density_kg_m3=300.0, drag_area_m2=0.0)
+    """Floats at each upper wing tip."""
     identification: StartRecord
+    """Prior of the twelve coefficients; needed unless the board has a `law`."""
     sweep: SweepRecord | None = None
+    """Rope between boards and bridles, with backstrops."""
     bridles: Annotated[tuple[OwnBridleRecord, ...], Field(max_length=6)] = (
         OwnBridleRecord(name='upper', at_board='upper', at_net='upper'),
         OwnBridleRecord(name='lower', at_board='lower', at_net='lower'),
     )
+    """One entry per bridle of a side."""
     hung: Annotated[tuple[HungRecord, ...], Field(max_length=100)] = ()
+    """Weights, chain, floats and kites on ropes."""
     effects: Annotated[tuple[EffectRecord, ...], Field(max_length=20)] = ()
+    """Physics that the model lacks."""
 
     @model_validator(mode='before')
     @classmethod

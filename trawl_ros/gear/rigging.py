@@ -19,57 +19,74 @@ class RopeRecord(Record):
     """Properties of a rope; ``segments`` of its kinds is the number of its numerical bars."""
 
     diameter_m: Annotated[float, Field(gt=0, le=0.5)]
+    """Diameter."""
     weight_in_water_n_m: Weight
+    """Weight in water per metre, negative for ropes that float."""
     stiffness_n: Stiffness
+    """Stiffness EA."""
     damping_time_s: Damping
+    """Inner damping c_l of eq. 21, as c_l times length over EA."""
     normal_drag: Drag
+    """Drag coefficient across, on the diameter."""
     tangential_drag: Drag
+    """Friction coefficient along, on the surface π d."""
     added_mass_normal: Drag
+    """Added mass across, over that of the displaced water."""
     added_mass_tangential: Drag
+    """Added mass along, over that of the displaced water."""
 
 
 class WarpRecord(RopeRecord):
     """Warp; its length is commanded to the winch."""
 
     segments: Annotated[int, Field(ge=2, le=500)]
+    """Numerical bars of each warp."""
 
 
 class BridleRecord(RopeRecord):
     """Bridle from a board to a wing tip."""
 
     length_m: Length
+    """Length of a bridle."""
     segments: Annotated[int, Field(ge=2, le=200)]
+    """Numerical bars of each bridle."""
 
 
 class FrameRopeRecord(RopeRecord):
-    """Rope of the frame, from wing tip to wing tip.
-
-    Without a length the hanging ratios of the net plan determine it.
-    """
+    """Rope of the frame, from wing tip to wing tip."""
 
     length_m: Length | None = None
+    """Length of headrope, footrope or side rope; needed without a net plan, whose hanging ratios
+    give it otherwise.
+    """
 
 
 class OwnMake(Record):
     """Properties in which a rope differs from the record ``bridle``."""
 
     diameter_m: Annotated[float, Field(gt=0, le=0.5)] | None = None
+    """Diameter."""
     weight_in_water_n_m: Weight | None = None
+    """Weight in water per metre."""
     stiffness_n: Stiffness | None = None
+    """Stiffness EA."""
     segments: Annotated[int, Field(ge=2, le=200)] | None = None
+    """Numerical bars."""
 
 
 class SweepRecord(OwnMake):
     """Rope on either side between backstrops and bridles.
 
-    Two backstrops of these lengths lead from the board's upper and lower bridle point to its front
-    end; all bridles begin at its back end. All three have the properties of ``bridle`` except those
-    given here.
+    Two backstrops lead to its front end; all bridles begin at its back end. All three have the
+    properties of ``bridle`` except those given here.
     """
 
     length_m: Length
+    """Length between backstrops and bridles."""
     upper_backstrop_m: Length
+    """Length from the board's upper bridle point to the front end of the sweep."""
     lower_backstrop_m: Length
+    """The same from the lower bridle point."""
 
     @property
     def changes(self) -> dict[str, float]:
@@ -81,14 +98,17 @@ class SweepRecord(OwnMake):
 class OwnBridleRecord(OwnMake):
     """Bridle on either side, from a point of the board to a place of the net.
 
-    It has the properties of ``bridle`` except those given here. ``side`` is the middle of the rope
-    between upper and lower wing tip. Bridles behind a sweep have no place at the board.
+    It has the properties of ``bridle`` except those given here.
     """
 
     name: Name
+    """Name; `hung` refers to it, as in `lower_bridle`."""
     at_board: Literal['upper', 'lower'] | None = None
+    """Bridle point of the board; none behind a `sweep`."""
     at_net: Literal['upper', 'side', 'lower']
+    """Wing tip, or `side` for the middle of the side rope."""
     length_m: Length | None = None
+    """Length, where it is not that of `bridle`."""
 
     @property
     def changes(self) -> dict[str, float]:
@@ -109,16 +129,27 @@ class HungRecord(Record):
     """
 
     name: str
+    """Name in messages."""
     rope: Name
+    """`headrope`, `footrope`, `side_rope`, `sweep`, or a bridle as `lower_bridle`."""
     from_share: Share = 0.0
+    """Part of the rope ahead of its beginning: 0 is at the board, at port or above."""
     to_share: Share = 1.0
+    """The same of its end; it is spread evenly between both."""
     weight_in_water_n: NotNegative = 0.0
+    """Weight in water, in all."""
     buoyancy_n: NotNegative = 0.0
+    """Buoyancy, in all, less the weight of the floats."""
     weight_in_water_n_m: NotNegative = 0.0
+    """Weight in water per metre of rope."""
     buoyancy_n_m: NotNegative = 0.0
+    """Buoyancy per metre of rope."""
     density_kg_m3: Annotated[float, Field(gt=0, le=20_000)] | None = None
+    """Density; default 7800 of weights, 300 of floats."""
     drag_area_m2: NotNegative = 0.0
+    """Drag coefficient times area."""
     lift_area_m2: Annotated[float, Field(ge=-1000, le=1000)] = 0.0
+    """Lift coefficient times area of kites and panels, across the flow, negative downward."""
 
     @model_validator(mode='after')
     def _sinks_or_floats(self) -> 'HungRecord':
