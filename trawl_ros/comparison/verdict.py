@@ -66,7 +66,7 @@ class Verdict:
     def next_step(self, logs: str, gear: str) -> str:
         """Return the next step in a sentence; ``logs`` and ``gear`` as on a command line."""
         steps = {
-            'none': 'Nothing need be done.',
+            'none': 'No action is needed.',
             'identify': 'Estimate the door coefficients: '
             f'trawl identify {logs} --gear {gear} --steady --out identified',
             'diagnose': 'Find what the model lacks: '

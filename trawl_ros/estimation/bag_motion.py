@@ -150,7 +150,7 @@ def fit_tows(
         raise TrawlError('the model cannot be towed along any stretch of the tows')
     if identification is not None and not fit.converged:
         # Intervals of a place that is not at rest mean nothing, and the windows have theirs.
-        raise TrawlError(f'the fit of all of the tow did not come to rest: {fit.reason}')
+        raise TrawlError(f'the fit of the whole tow did not converge: {fit.reason}')
     if identification is None:
         return MotionOutcome(fit, prior, None, tuple(refused), stack(()))
     estimator = identification.estimator

@@ -78,9 +78,9 @@ class IdentificationNode(TrawlNode):
     """Finds steady windows in what the instruments report and refits the gear's model to them.
 
     After each accepted window it publishes the estimate, its covariance, a status and the
-    innovation, and saves its state; where all of the tow is learned from, an estimate by it after
+    innovation, and saves its state; where the whole tow is learned from, an estimate by it after
     each half minute. ``identification/finish``, or the signal to end, brings the estimate to rest
-    and writes the report; the former fits all of the tow too.
+    and writes the report; the former fits the whole tow too.
     """
 
     SPECS: ClassVar = (
@@ -94,7 +94,7 @@ class IdentificationNode(TrawlNode):
              'number is put behind its name; none if empty.'),
         Text('state', '', 'File that takes the state after each window, and from which a node that '
              'is started again goes on; none if empty.'),
-        Flag('motion', True, 'True if all of the tow is learned from, hauling and veering too, '
+        Flag('motion', True, 'True to fit the whole tow, hauling and veering too, '
              'as well as its steady windows.'),
         Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
              'are compared with the estimate in the report.'),
@@ -160,7 +160,7 @@ class IdentificationNode(TrawlNode):
         )
 
     def _learning(self, identification: Identification) -> MotionLearner | None:
-        """Learning from all of the tow; None where that is not wanted."""
+        """Learning from the whole tow; None where that is not wanted."""
         if not self.parameters['motion']:
             return None
         prior, net = self.parameters['prior'], self.parameters['net']

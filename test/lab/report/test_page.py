@@ -58,3 +58,21 @@ def test_a_report_is_written_in_three_forms(tmp_path):
     assert '<td class="misses">no</td>' in html
     assert 'src="figures/warp.png"' in html
     assert 'src="data:image/png;base64,' in html
+
+
+def test_the_section_that_answers_comes_before_what_is_missed(tmp_path):
+    sections = [
+        *SECTIONS,
+        Section('Sea', [MeasuredValue('off', 2.0, 'm')], group='Hauls', name='sea'),
+    ]
+    page = Page('study', 'A study', 'trawl study', 'It was measured.', lead='sea')
+    write_page(tmp_path, page, sections)
+    wanted = {
+        'md': ('### Sea', 'Targets that are not', '## Speed'),
+        'html': ('>Sea</h3>', 'Targets that are not', '>Speed</h2>'),
+    }
+    for kind, heads in wanted.items():
+        text = (tmp_path / f'study.{kind}').read_text()
+        places = [text.index(head) for head in heads]
+        assert places == sorted(places)
+        assert text.count(heads[0]) == 1

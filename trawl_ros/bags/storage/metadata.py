@@ -215,7 +215,7 @@ def read_information(path: Path) -> Any:
     BagError
         If the file is unreadable, not YAML, or has no such key.
     """
-    hint = 'the .mcap file beside it can be opened alone'
+    hint = 'the .mcap file next to it can be opened alone'
     text = read_whole(path, METADATA_BYTES, BagError, 'a bag of sane size')
     try:
         data = load_plain(text)

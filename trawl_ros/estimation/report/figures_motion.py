@@ -19,7 +19,7 @@ def motion_figure(motion: MotionOutcome, truth: FloatArray | None) -> Figure:
     assert motion.windows is not None
     both = (
         ('steady windows', motion.windows.values, motion.windows.std, SECOND, -0.15),
-        ('all of the tow', motion.fit.values, motion.std, MEASURED, 0.15),
+        ('whole tow', motion.fit.values, motion.std, MEASURED, 0.15),
     )
     for words, values, std, colour, beside in both:
         estimates.errorbar(

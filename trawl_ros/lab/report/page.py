@@ -87,7 +87,9 @@ class Page:
         First sentence of the report, before how many targets are reached; by default the first
         value that has a target.
     lead
-        Name of the section whose first picture is shown at the top; '' for the first that has one.
+        Name of the section that answers the question of the report. It comes before the targets
+        that are not reached, and its first picture is at the top. '' for a page without one, which
+        has the first picture of all there.
     """
 
     name: str
@@ -140,7 +142,8 @@ def write_page(
             f'report.{kind}',
             page=page,
             version=__version__,
-            sections=filled_in,
+            answering=[one for one in filled_in if page.lead and one.name == page.lead],
+            sections=[one for one in filled_in if not page.lead or one.name != page.lead],
             verdict=verdict,
             lead=lead or shown[:1],
             missed=_missed_table(sections),

@@ -12,6 +12,8 @@ from trawl_ros.lab.report.page import Findings
 
 SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
+        'sea': ('hauls',),
+        'tank': ('flume',),
         'closed_forms': (
             'towed_wire',
             'catenary',
@@ -32,22 +34,20 @@ SECTIONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         'peers': ('moordyn_wire', 'moorpy_wire'),
         'branches': ('steady_states', 'fastening_points'),
         'panels': ('netting',),
-        'sea': ('hauls',),
-        'tank': ('flume',),
     }
 )
 """Modules by sub-package of `trawl_ros.lab.validation`; each has a ``CASE`` of its name."""
 
 TITLES: Mapping[str, str] = MappingProxyType(
     {
+        'sea': 'Hauls at sea',
+        'tank': 'A flume tank',
         'closed_forms': 'Closed forms',
         'convergence': 'Convergence',
         'paper': 'The paper, section IV',
         'peers': 'Peers',
         'branches': 'Branches',
         'panels': 'Netting panels',
-        'sea': 'Hauls at sea',
-        'tank': 'A flume tank',
     }
 )
 

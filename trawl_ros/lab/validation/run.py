@@ -26,7 +26,7 @@ LONG = ('steady_states', 'sentences', 'board_frame', 'hauls', 'flume')
 COMMAND = 'trawl validate'
 
 LEAD = 'hauls'
-"""Case whose error and figure stand at the top of the report."""
+"""Case that answers the question of the report, and so is at its top."""
 
 
 def validate(
@@ -107,13 +107,15 @@ def validate(
 
 def _answer(finished: Sequence[Section]) -> str:
     """Return how far the model is from hauls at sea, where these are among the cases."""
-    errors = [
-        row.figure
-        for case in finished
-        for row in case.rows
-        if (case.name, row.key) == (LEAD, 'median_error')
-    ]
-    return f'The median error over published hauls at sea is {errors[0]}.' if errors else ''
+    rows = {row.key: row for case in finished if case.name == LEAD for row in case.rows}
+    if not rows:
+        return ''
+    return (
+        f'Over {rows["points"].figure} points of published hauls at sea the median error is '
+        f'{rows["median_error"].figure}; {rows["near"].what}: {rows["near"].figure}. For gears '
+        'whose net plan is published the median is '
+        f'{rows["median_error_of_published_plans"].figure}.'
+    )
 
 
 def run_cases(

@@ -157,7 +157,7 @@ def motion_status(motion: MotionKnowledge, windows: Estimate | None) -> Status:
 
 
 def motion_diagnosis(motion: MotionKnowledge) -> Status:
-    """Return how much is learned from all of the tow, or why nothing, for ``/diagnostics``."""
+    """Return how much is learned from the whole tow, or why nothing, for ``/diagnostics``."""
     values = {'minutes': f'{motion.minutes:.1f}', 'used': str(motion.estimate is not None).lower()}
     return Status('motion', ERROR if motion.failed else OK, _about(motion), values)
 

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Report that an identification ends with: of its windows, and of all of the tow where wanted."""
+"""Report that an identification ends with: of its windows, and of the whole tow where wanted."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -25,7 +25,7 @@ class ReportWriter:
     folder
         For the report; none is written where None.
     motion
-        Learning from all of the tow, where that is wanted.
+        Learning from the whole tow, where that is wanted.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class ReportWriter:
     def __call__(self, identification: Identification) -> str:
         """Write the report of an identification at rest; the sentence with which all ends.
 
-        The results of the windows are there before all of the tow is fitted.
+        The results of the windows are there before the whole tow is fitted.
 
         Raises
         ------

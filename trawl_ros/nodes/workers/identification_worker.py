@@ -35,7 +35,7 @@ class _Reset:
 class Finish:
     """Request to finish; ``outcome`` is there once it is granted. Coroutines may await that.
 
-    ``whole`` is true if all of the tow is fitted too, where it is learned from.
+    ``whole`` is true if the whole tow is fitted too, where it is learned from.
     """
 
     def __init__(self, *, whole: bool = True) -> None:
@@ -75,7 +75,7 @@ class IdentificationWorker(Worker[Work]):
     report
         Called at the end to write the report; gives the sentence with which all ends.
     motion
-        Learning from all of the tow, where that is wanted.
+        Learning from the whole tow, where that is wanted.
 
     All of these are called in this thread.
     """

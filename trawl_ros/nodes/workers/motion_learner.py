@@ -23,7 +23,7 @@ BEFORE = 'the tow before the restart of the node is known by its steady windows 
 
 @dataclass(frozen=True)
 class MotionKnowledge:
-    """Knowledge from all of the tow so far.
+    """Knowledge from the whole tow so far.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class MotionKnowledge:
 
 
 class MotionLearner:
-    """Learning from all of the tow, by one thread.
+    """Learning from the whole tow, by one thread.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class MotionLearner:
     knowledge
         Newest, as a record that other threads may read.
     at_end
-        True if all of the tow is fitted where an identification is finished.
+        True if the whole tow is fitted where an identification is finished.
     """
 
     def __init__(
@@ -131,7 +131,7 @@ class MotionLearner:
         return self._live.refusal() if self.at_end else ENDED
 
     def finish(self, identification: Identification | None) -> 'MotionOutcome':
-        """Fit all of the tow from beginning to end, as from a bag.
+        """Fit the whole tow from beginning to end, as from a bag.
 
         Parameters
         ----------

@@ -43,7 +43,7 @@ class EstimatorOutcome:
     fit
         Fit of the estimate.
     motion
-        Knowledge from all of the tow; None where that is not wanted.
+        Knowledge from the whole tow; None where that is not wanted.
     why_not
         Reason for the lack of an estimate; None with one.
     troubles
@@ -68,7 +68,7 @@ class EstimatorOutcome:
 
     @property
     def told(self) -> Estimate | None:
-        """Estimate to use: by all of the tow where it may be, else by its steady windows."""
+        """Estimate to use: by the whole tow where it may be, else by its steady windows."""
         by_motion = None if self.motion is None else self.motion.estimate
         return self.estimate if by_motion is None else by_motion
 

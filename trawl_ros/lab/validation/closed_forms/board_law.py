@@ -172,7 +172,7 @@ def run(quick: bool) -> Findings:
             Drawing(
                 'coefficients',
                 'Force and moment coefficients over the attack angle without slip, as the model '
-                'has them and evaluated anew; between the dotted lines eq. 14 holds as it stands.',
+                'has them, and evaluated independently; between the dotted lines eq. 14 holds.',
                 _drawn(default.board),
             ),
         ),
@@ -229,7 +229,7 @@ def _drawn(record: BoardRecord) -> Figure:
         for k in group:
             (curve,) = axes.plot(fine, curves[:, k], '-', label=names[k])
             axes.plot(dots, points[:, k], 'o', ms=3, color=curve.get_color())
-        axes.plot([], [], 'ko', ms=3, label='evaluated anew')
+        axes.plot([], [], 'ko', ms=3, label='evaluated independently')
         for edge in (0.0, 40.0):
             axes.axvline(edge, color='k', ls=':', lw=1)
         axes.set(xlabel='attack angle α [°]', ylabel=f'{title} coefficient [-]')

@@ -148,9 +148,9 @@ def run(quick: bool) -> Findings:
         ),
         tables=(*_tables(default, finer[-1], lengths), bowed_table),
         text=(
-            f'The default gear at {SPEED:g} m/s beside the same gear with warps, bridles and net '
-            'cut more finely, one at a time and together: warps and bridles twice, the net with '
-            f'half as many meshes again, {more} around its mouth, where the real net has 68. '
+            f'The default gear at {SPEED:g} m/s compared with the same gear with warps, bridles '
+            'and net cut more finely, one at a time and together: warps and bridles twice, the net '
+            f'with half as many meshes again, {more} around its mouth, where the real net has 68. '
             'Differences are shares of the finer value; pitch and slip, which have no natural size '
             'since they may be zero, are set '
             f'against {np.degrees(REFERENCE):.0f}°.'

@@ -95,9 +95,9 @@ def _slopes(fit: PaperRefit) -> list[Claim]:
     std = dict(zip(COEFFICIENTS, fit.estimate.std, strict=True))
     start = dict(zip(COEFFICIENTS, fit.prior.start, strict=True))
     tests = (
-        'the tests the paper compares with are not printed; beside the line that the gear file '
-        'draws through published doors, C_y^F = {:.2f} α + {:.2f}, the fit has {:.2f} ± {:.2f} '
-        'and {:.2f} ± {:.2f}.'
+        'the tests the paper compares with are not printed; compared with the line that the gear '
+        'file draws through published doors, C_y^F = {:.2f} α + {:.2f}, the fit has '
+        '{:.2f} ± {:.2f} and {:.2f} ± {:.2f}.'
     ).format(start['a2'], start['c2'], value['a2'], std['a2'], value['c2'], std['c2'])
     return [
         claim(
@@ -163,7 +163,7 @@ def _deviations(fit: PaperRefit) -> list[Claim]:
     worst = float(np.degrees(WORKING[drag.argmax()]))
     lift = away('a2', UPPER)
     worst_lift = float(np.degrees(UPPER[lift.argmax()]))
-    beside = 'beside what made the trial'
+    beside = 'compared with what made the trial'
     return [
         claim(
             'IV.B, Fig. 5',

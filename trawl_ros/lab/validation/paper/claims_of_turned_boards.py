@@ -166,8 +166,8 @@ def _depth(changes: Changes) -> list[Claim]:
                 change,
                 '%',
                 within(5.0, of=-30.0),
-                f'the upward force on a board changes by {upward:+.1f} kN beside a warp tension '
-                f'of {changes.base.seen.warp_tension / 1e3:.0f} kN.',
+                f'the upward force on a board changes by {upward:+.1f} kN; the warp tension '
+                f'is {changes.base.seen.warp_tension / 1e3:.0f} kN.',
                 key='depth_epsilon',
             ),
         ),

@@ -37,4 +37,4 @@ def run(quick: bool) -> Findings:
     )
 
 
-CASE = ValidationCase('sentences', 'Sentences of section IV beside this model', run)
+CASE = ValidationCase('sentences', 'Sentences of section IV compared with this model', run)

@@ -148,4 +148,4 @@ def _histories(own: History, peer: History, manoeuvre: WireManoeuvre) -> Figure:
     return figure
 
 
-CASE = ValidationCase('moordyn_wire', 'A towed wire beside MoorDyn', run)
+CASE = ValidationCase('moordyn_wire', 'A towed wire compared with MoorDyn', run)

@@ -55,4 +55,4 @@ def run(quick: bool) -> Findings:
     )
 
 
-CASE = ValidationCase('moorpy_wire', 'A steady towed wire beside MoorPy', run)
+CASE = ValidationCase('moorpy_wire', 'A steady towed wire compared with MoorPy', run)

@@ -72,7 +72,9 @@ def points_table(hauls: Sequence[ModelledHaul], published: PublishedHauls) -> Te
             )
     head = ('gear', 'haul', 'warp', 'speed', 'what', 'sea', 'model', 'error', 'use', 'source')
     sources = '; '.join(f'{key}: {source.title}' for key, source in published.sources.items())
-    return TextTable(f'Every published point beside the model. {sources}', head, tuple(rows))
+    return TextTable(
+        f'Every published point, compared with the model. {sources}', head, tuple(rows)
+    )
 
 
 def trends_table(trends: Sequence[TrendRecord], hauls: Modelled) -> TextTable:
