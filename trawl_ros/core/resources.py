@@ -68,7 +68,12 @@ def packaged(path: str | Path, folder: str, error: type[TrawlError] = TrawlError
     except TrawlError as reason:
         if is_yaml:  # the caller says that there is no such file
             return path
-        raise error(f'{path}: neither a file nor a name of the package; {reason}') from reason
+        # The first part names a path inside the package, which says nothing to the caller.
+        hint = str(reason).partition('; ')[2]
+        found = 'found a folder' if path.is_dir() else 'no such file'
+        raise error(
+            f'{path}: {found}, expected a file or a name of the package; {hint}'
+        ) from reason
 
 
 def packaged_bag(path: str | Path) -> Path:

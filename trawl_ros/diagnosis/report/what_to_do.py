@@ -20,7 +20,7 @@ def what_to_do(diagnosis: Diagnosis) -> str:
 def _sentences(diagnosis: Diagnosis) -> list[str]:
     match diagnosis.verdict:
         case 'NO_DISCREPANCY':
-            return ['Nothing need be done. The statistics of the report say what would not show.']
+            return ['No action is needed. The statistics of the report say what would not show.']
         case 'NOT_TESTABLE':
             return ['Correct what the reason says, and diagnose again.']
     stuck = [_frozen(FROZEN)] if diagnosis.frozen else []
