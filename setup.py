@@ -43,6 +43,7 @@ BY_ROSDEP = {
 # What has no rosdep key, or is too old there: the README's line of pip, which tests hold to this.
 # Lower bounds exclude versions with published holes.
 BY_PIP = [
+    'cma>=4.0,<5',
     'cryptography>=42.0.4,<60',
     'dask>=2024.8,<2027',
     'distributed>=2024.8,<2027',

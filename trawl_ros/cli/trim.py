@@ -88,6 +88,12 @@ def _kinds(
     help='Changes that are allowed if fastening points are not enough, separated by commas: '
     f'{", ".join(KINDS)}.',
 )
+@click.option(
+    '--in-motion',
+    is_flag=True,
+    help='Choose the points so that the boards stand while they are hauled, veered and turned over '
+    'the range of --warps and --speeds; takes minutes on all cores.',
+)
 @click.option('--out', type=FILE, help='New file for a copy of GEAR with the result.')
 @UNITS_OPTION
 @click.pass_context
@@ -105,6 +111,7 @@ def command(
     warps: tuple[float, float] | None,
     speeds: tuple[float, float] | None,
     free: tuple[str, ...],
+    in_motion: bool,
     out: Path | None,
     units: DisplayUnits,
 ) -> None:
@@ -118,6 +125,10 @@ def command(
     --speed. The command then finds the nearest angles. With --warps or --speeds it chooses all
     coordinates so that the angles change little over the range. With --free it also changes the
     rigging, if the wanted values are not reached or part of the range is not usable.
+
+    With --in-motion every rigging that is tried has the wanted angles in the middle of the range
+    and is towed for 88 minutes under random commands, in calm water and in swell. The rigging whose
+    boards lean least is chosen. Give the result to the command again to search further.
     """
     from trawl_ros.gear.edit import WRITTEN_DECIMALS, require_new, write_changed
     from trawl_ros.gear.load import load_gear
@@ -132,6 +143,11 @@ def command(
         _refuse_ignored(context, {'warp': warps, 'speed': speeds})
     elif spread is None or depth is None or attack is not None or inclination is not None:
         raise click.UsageError('expected either --attack and --inclination or --spread and --depth')
+    if in_motion and (angles is None or warps is None or speeds is None or free):
+        raise click.UsageError(
+            '--in-motion: expected together with --attack, --inclination, --warps and --speeds, '
+            'and without --free'
+        )
     if tension is not None and angles is not None:
         raise click.UsageError('--tension: expected together with --spread and --depth')
     if out is not None:
@@ -149,7 +165,8 @@ def command(
         model, changes = traded.model(model), ()
     low, high = speeds or (speed, speed)
     wish = WantedTrim(*angles, float(np.radians(pitch)), warps or (warp, warp), (low, high))
-    points, usable, more, steady = _trimmed(model, changes, wish, tell)
+    find = _trimmed_in_motion if in_motion else _trimmed
+    points, usable, more, steady = find(model, changes, wish, tell)
     if wanted is not None and steady is not None:
         reached = replace(wanted, observables=steady.observables)
         if reached.missed_by > MAX_RELATIVE_MISS:
@@ -242,16 +259,49 @@ def _trimmed(
                 model, changes, found, **wish.angles, on_progress=display
             )
     click.echo('\n'.join(points_lines(found.points)))
-    lines = [*range_lines(found), *wish_lines(found, wish.attack, wish.inclination)]
     if traded.changes:
-        lines.append(f'with {traded.told}')
+        tell(f'with {traded.told}')
     elif changes and found.usable < len(found.found):
-        lines.append('none of the allowed changes makes more of the range usable')
+        tell('none of the allowed changes makes more of the range usable')
+    _tell_range(found, wish, tell)
+    steady = found.found[0].steady if len(found.found) == 1 else None
+    return found.points, found.usable == len(found.found), traded, steady
+
+
+def _trimmed_in_motion(
+    model: 'GearModel', changes: 'tuple[RigChange, ...]', wish: WantedTrim, tell: 'Comment'
+) -> 'tuple[FloatArray, bool, Traded, SteadyState | None]':
+    """Find points with which the boards stand in motion, print and return as `_trimmed` does."""
+    from trawl_ros.simulation.trim_in_motion import trim_in_motion
+    from trawl_ros.solver.trimming.over_range import states_over_range
+    from trawl_ros.solver.trimming.traded import Traded
+
+    with ProgressDisplay(error_console()) as display:
+        best = trim_in_motion(
+            model,
+            attack=wish.attack,
+            inclination=wish.inclination,
+            pitch=wish.pitch,
+            warp_lengths=wish.warps,
+            speeds=wish.speeds,
+            on_progress=display,
+        )
+    found = states_over_range(model.with_board(points=best.points), *wish.places)
+    click.echo('\n'.join(points_lines(found.points)))
+    tell(
+        f'under random commands the largest lean of two minutes is {np.degrees(best.lean):.0f}° '
+        f'in the root mean square, {np.degrees(best.first_lean):.0f}° with the points of the file'
+    )
+    _tell_range(found, wish, tell)
+    return found.points, found.usable == len(found.found), Traded(), None
+
+
+def _tell_range(found: 'RangeTrim', wish: WantedTrim, tell: 'Comment') -> None:
+    """Print all places of a range, the coordinates on a bound, and advice."""
+    lines = [*range_lines(found), *wish_lines(found, wish.attack, wish.inclination)]
     lines.extend(f'at its bound: {coordinate}' for coordinate in found.at_bounds)
     for line in (*lines, closing_line(found), *_advice_lines(found)):
         tell(line)
-    steady = found.found[0].steady if len(found.found) == 1 else None
-    return found.points, found.usable == len(found.found), traded, steady
 
 
 def _advice_lines(found: 'RangeTrim') -> tuple[str, ...]:

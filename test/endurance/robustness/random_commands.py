@@ -1,6 +1,6 @@
 """An hour of random commands: hauled, veered, slowed down and turned, in calm and in swell."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -8,36 +8,12 @@ from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import fallen_boards
 from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.heave import irregular_heave
+from trawl_ros.simulation.random_commands import CommandLimits, RandomCommands
 from trawl_ros.simulation.sea import Sea
 from trawl_ros.simulation.simulation import CALM, Simulation
 from trawl_ros.solver.stepper import StepFailed
 
 START = Command(500.0, 500.0, 2.1)
-
-
-@dataclass(frozen=True)
-class CommandLimits:
-    """Limits within which the default gear is commanded.
-
-    Attributes
-    ----------
-    warps, speeds
-        Shortest and longest warp (m), lowest and highest speed (m/s).
-    speed_step
-        Largest change of speed at once, m/s.
-    turn_rate, turn
-        Largest rate of turn (rad/s) and change of course by one command (rad): in a longer turn
-        at that rate the gear comes to lie within the ship's circle, and its inner board falls.
-    uneven
-        Largest difference of the warps, as a part of their length.
-    """
-
-    warps: tuple[float, float] = (150.0, 1000.0)
-    speeds: tuple[float, float] = (1.5, 2.8)
-    speed_step: float = 0.3
-    turn_rate: float = np.radians(0.25)
-    turn: float = np.radians(45.0)
-    uneven: float = 0.03
 
 
 RECOVERY = Command(500.0, 500.0, 2.4)
@@ -78,17 +54,13 @@ def commanded_hour(
         sea = Sea(heave=irregular_heave(height, peak, draws, begin=60.0, growth=60.0))
         period = SWELL_PERIOD
     simulation = Simulation(model, START, period=period, sea=sea)
-    time, following, straight, fallen_s, fallen = 0.0, 0.0, np.inf, 0.0, False
+    commands = RandomCommands(draws, limits)
+    time, fallen_s, fallen = 0.0, 0.0, False
     while time < duration:
         if time >= duration - recovery:
             simulation.command = RECOVERY
-        elif time >= following:
-            simulation.command = _command(draws, simulation.command.speed, limits)
-            following = time + draws.uniform(60.0, 600.0)
-            rate = abs(simulation.command.turn_rate)
-            straight = time + limits.turn / rate if rate else np.inf
-        elif time >= straight:
-            simulation.command, straight = replace(simulation.command, turn_rate=0.0), np.inf
+        else:
+            simulation.command = commands.after(simulation.command, time)
         try:
             for _ in range(round(GLANCE / period)):
                 now = simulation.advance()
@@ -101,14 +73,3 @@ def commanded_hour(
         fallen = any(fallen_boards(state))
         fallen_s += GLANCE * fallen
     return CommandedHour('', time, fallen_s, fallen)
-
-
-def _command(draws: np.random.Generator, speed: float, limits: CommandLimits) -> Command:
-    """Draw a command after one with a speed."""
-    port = draws.uniform(*limits.warps)
-    uneven = draws.uniform(-limits.uneven, limits.uneven) if draws.random() < 0.3 else 0.0
-    rate = draws.uniform(-limits.turn_rate, limits.turn_rate) if draws.random() < 0.5 else 0.0
-    step = draws.uniform(-limits.speed_step, limits.speed_step)
-    return Command(
-        port, port * (1.0 + uneven), float(np.clip(speed + step, *limits.speeds)), float(rate)
-    )

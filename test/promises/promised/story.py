@@ -28,7 +28,7 @@ RENAMED = re.compile(r'__node:=(\w+)')
 
 NOT_RUN = {
     **dict.fromkeys(
-        ('rosdep install', 'python3 -m venv --system-site-packages', "pip install 'cryptography"),
+        ('rosdep install', 'python3 -m venv --system-site-packages', "pip install 'cma"),
         'for machines with ROS 2; it would change the environment of the test',
     ),
     'ros2 security create_keystore keystore': 'needs a full ROS 2',

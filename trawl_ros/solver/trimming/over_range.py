@@ -8,7 +8,7 @@ unknown moments turn the boards little. Points near the centre of gravity would 
 would have no stiffness.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -20,6 +20,7 @@ from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.model.board import Board
 from trawl_ros.model.gear_model import GearModel
+from trawl_ros.model.state import State
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
 from trawl_ros.solver.first_guess import coarser_model
 from trawl_ros.solver.trim import roll_for
@@ -223,6 +224,14 @@ def trim_over_range(
     return max((_released(whole, points) for points in tried), key=_worth)
 
 
+def states_over_range(
+    model: GearModel, warp_lengths: Sequence[float], speeds: Sequence[float]
+) -> RangeTrim:
+    """Return the steady states of a gear at all pairs of warp length (m) and speed (m/s)."""
+    places = tuple((warp, speed, None) for warp, speed in product(warp_lengths, speeds))
+    return RangeTrim(model.board.points, model, _towed(model, places))
+
+
 def trim_held(
     held: HeldGear,
     start: FloatArray,
@@ -335,10 +344,18 @@ def _searched(held: HeldGear, start: FloatArray, unknown: float) -> FloatArray:
 def _released(held: HeldGear, points: FloatArray) -> RangeTrim:
     """Release the boards with these points, from the shapes in which they were held."""
     model = held.model.with_board(points=points)
+    near = ((*place, state) for place, state in zip(held.places, held.states, strict=True))
+    return RangeTrim(points, model, _towed(model, near))
+
+
+def _towed(
+    model: GearModel, places: Iterable[tuple[float, float, State | None]]
+) -> tuple[RangePoint, ...]:
+    """Tow a gear at warp lengths (m) and speeds (m/s), each from a near state if there is one."""
     found = []
-    for (warp, speed), state in zip(held.places, held.states, strict=True):
+    for warp, speed, state in places:
         try:
             found.append(RangePoint(warp, speed, steady_state(model, warp, speed, near=state), ''))
         except NoSteadyState as reason:
             found.append(RangePoint(warp, speed, None, str(reason)))
-    return RangeTrim(points, model, tuple(found))
+    return tuple(found)
