@@ -139,8 +139,8 @@ def bic(ready: Prepared, options: BaselineOptions) -> AnswerRecord:
         return made
     repair = decision.best.refit
     predictor = ready_for(ready.predictor, [own.effect for own in repair.wanted])
-    pair = (without_kept_back(own, ready.halves) for own in (ready.base, repair))
-    comparison = holdout_comparison(predictor, *pair, None, ready.halves.kept_back)
+    alone, repaired = (without_kept_back(own, ready.halves) for own in (ready.base, repair))
+    comparison = holdout_comparison(predictor, alone, repaired, None, ready.halves.kept_back)
     return with_repair(made, comparison, ready.base, repair)
 
 
