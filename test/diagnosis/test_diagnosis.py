@@ -60,7 +60,7 @@ def test_a_catch_that_comes_in_steps_is_named(caught):
 
 def test_the_gap_shrinks_on_a_tow_that_decided_nothing(caught):
     assert caught.split.by == 'tow'
-    deciding = {window.tow for window in caught.split.deciding}
+    deciding = {window.tow for window in caught.split.fitted}
     assert not deciding & {window.tow for window in caught.split.kept_back}
     # One tow of five windows, whose depths are off as one tow's may be: a study asks for more.
     assert caught.holdout.removed > 0.2

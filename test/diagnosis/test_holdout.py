@@ -43,3 +43,21 @@ def test_a_board_lies_over_only_where_a_cold_start_says_so_too(
     found = holdout.predicted(Predictor(SimpleNamespace()), refit, WINDOW)
     assert found.way == taken
     assert refit.predicted == {WINDOW.index: found}
+
+
+def test_what_is_kept_back_is_not_fitted_and_has_a_course_that_others_may_lack():
+    tows = [SimpleNamespace(tow=tow, state=3 * tow + place, index=3 * tow + place)
+            for tow in range(4) for place in range(3)]  # fmt: skip
+    halves = holdout.split(tows, frozenset({0}))
+    assert {window.tow for window in halves.kept_back} == {2}
+    assert {window.tow for window in halves.fitted} == {0, 1, 3}
+    asked = []
+
+    def subset(states):
+        asked.append(states)
+        return SimpleNamespace(finish=lambda: 'estimate')
+
+    refit = SimpleNamespace(wanted=('a cause',), estimator=SimpleNamespace(subset=subset))
+    again = holdout.without_kept_back(refit, halves)
+    assert asked == [{window.state for window in halves.fitted}]
+    assert (again.wanted, again.estimate) == (('a cause',), 'estimate')

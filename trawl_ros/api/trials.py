@@ -303,7 +303,7 @@ def _onsets(
 
     known = of_gear_file(diagnosis.gear)
     if diagnosis.base is not None:
-        windows = (*diagnosis.split.deciding, *diagnosis.split.kept_back)
+        windows = (*diagnosis.split.fitted, *diagnosis.split.kept_back)
         known = by_estimate(diagnosis.base.estimate, windows)
     found = []
     for number, path in enumerate(paths):

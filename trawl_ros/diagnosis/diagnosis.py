@@ -52,7 +52,7 @@ class Diagnosis:
     baseline
         Those in which nothing was looked for.
     split
-        Windows that decided, and those kept back.
+        Windows kept back in the comparison of errors, and the others; all of them decide.
     base, screen, posterior
         Boards alone; all hypotheses to first order; their probabilities. None where it did not
         come to that.

@@ -1,6 +1,10 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Hold-out comparison: kept-back windows predicted without the effect, with it, with a placebo."""
+"""Hold-out comparison: kept-back windows predicted without the effect, with it, with a placebo.
+
+All windows decide on the cause. For the comparison alone the fits are repeated without the windows
+that are kept back.
+"""
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -26,20 +30,18 @@ EVERY = 3
 
 @dataclass(frozen=True)
 class Split:
-    """Split into windows that decide and windows that are held out.
+    """Split into windows that are fitted in the comparison, and those that they predict.
 
-    ``by`` says what is held out: tows, or steady states of tows that also decide.
+    ``by`` says what is kept back: tows, or steady states of tows that are also fitted.
     """
 
-    deciding: tuple[SteadyWindow, ...]
+    fitted: tuple[SteadyWindow, ...]
     kept_back: tuple[SteadyWindow, ...]
     by: str
 
 
 def split(windows: Sequence[SteadyWindow], baseline: frozenset[int]) -> Split:
     """Keep every third of the examined tows back, from the second on, but not the last.
-
-    The last may have been towed to settle what those before it could not.
 
     Parameters
     ----------
@@ -101,6 +103,13 @@ class HoldoutComparison:
         return _removed(self.before, self.placebo)
 
 
+def without_kept_back(refit: Refit, halves: Split) -> Refit | None:
+    """Repeat a fit without the windows kept back; None where none of the others is left."""
+    estimator = refit.estimator.subset({window.state for window in halves.fitted})
+    estimate = estimator.finish()
+    return None if estimate is None else Refit(refit.wanted, estimator, estimate)
+
+
 def errors(
     predictor: Predictor, refits: Sequence[Refit], windows: Sequence[SteadyWindow]
 ) -> list[HoldoutErrors]:
@@ -128,13 +137,13 @@ def errors(
 
 def holdout_comparison(
     predictor: Predictor,
-    base: Refit,
+    base: Refit | None,
     best: Refit | None,
     placebo: Refit | None,
     windows: Sequence[SteadyWindow],
     instead: str | None = None,
 ) -> HoldoutComparison | None:
-    """Compare refits on the windows kept back; None where refits are none.
+    """Compare refits on the windows kept back; None without such windows or a fit of the boards.
 
     Parameters
     ----------
@@ -147,7 +156,7 @@ def holdout_comparison(
     instead
         Name of the wrong one.
     """
-    if not windows:
+    if not windows or base is None:
         return None
     refits = [refit for refit in (base, best, placebo) if refit is not None]
     compared = iter(errors(predictor, refits, windows))

@@ -11,7 +11,13 @@ from trawl_ros.core.errors import GearError
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.diagnosis.diagnosis import BoardsMoved, Diagnosis
 from trawl_ros.diagnosis.fit_beside import fit_beside
-from trawl_ros.diagnosis.holdout import holdout_comparison, split
+from trawl_ros.diagnosis.holdout import (
+    HoldoutComparison,
+    Split,
+    holdout_comparison,
+    split,
+    without_kept_back,
+)
 from trawl_ros.diagnosis.inference.candidates import lower_edges
 from trawl_ros.diagnosis.inference.decision import Decision, decide
 from trawl_ros.diagnosis.inference.options import InferenceOptions
@@ -29,7 +35,7 @@ from trawl_ros.diagnosis.instruments import (
 from trawl_ros.diagnosis.library.entries import library
 from trawl_ros.diagnosis.locating import significant_patterns
 from trawl_ros.diagnosis.next_tow import Proposal, propose
-from trawl_ros.diagnosis.predictive_check import on_holdout
+from trawl_ros.diagnosis.predictive_check import QuantityOnHoldout, on_holdout
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
@@ -84,7 +90,6 @@ def diagnose_windows(
     stuck = frozen(windows, tows)
     windows, fallen = standing(without(windows, stuck), tows)
     halves = split(windows, baseline)
-    deciding, kept_back = halves.deciding, halves.kept_back
     model = build_model(gear)
     # Effects found by an earlier diagnosis are those that the gear in order did not have.
     new = frozenset(effect.name for effect in gear.effects if effect.provenance is not None)
@@ -104,11 +109,11 @@ def diagnose_windows(
     on_progress(_step('fitting the boards'))
     prior = board_prior(gear)
     fit = fit_beside if new else fit_boards
-    base = fit(predictor, prior, deciding)
-    if base is None or len(base.fit.windows) < 0.5 * len(deciding):
+    base = fit(predictor, prior, windows)
+    if base is None or len(base.fit.windows) < 0.5 * len(windows):
         return replace(
             known,
-            reason=wrong_unit(predictor, prior, deciding)
+            reason=wrong_unit(predictor, prior, windows)
             or 'most of the windows have no steady state in this model: it is another gear, or far '
             'from how it was towed',
         )
@@ -131,7 +136,9 @@ def diagnose_windows(
     )
     decision = decide(posterior, options)
     if decision.verdict == 'NO_DISCREPANCY':
-        comparison = holdout_comparison(predictor, base, None, None, kept_back)
+        comparison = holdout_comparison(
+            predictor, without_kept_back(base, halves), None, None, halves.kept_back
+        )
         verdict = 'NAMED' if stuck else decision.verdict
         return replace(known, verdict=verdict, reason=decision.reason, holdout=comparison)
     # Noise is found by the fits, so that a misfit shows in it.
@@ -142,26 +149,18 @@ def diagnose_windows(
         and best is not None
         and len(best.suspects) == 1
     )
-    if noise > OTHER_GEAR_NOISE and not (
-        near or was_in_order(predictor, prior, deciding, baseline)
-    ):
+    if noise > OTHER_GEAR_NOISE and not (near or was_in_order(predictor, prior, windows, baseline)):
         return replace(
             known,
-            reason=wrong_unit(predictor, prior, deciding)
+            reason=wrong_unit(predictor, prior, windows)
             or f'readings are {noise:.0f} times further from the model than their '
             'errors explain, and no single cause brings them near: it is another gear',
         )
     on_progress(_step('predicting what was kept back'))
-    placebo = _placebo(posterior, best)
     ready = ready_for(predictor, [entry.effect for entry in entries])
-    refits = [None if own is None else own.refit for own in (best, placebo)]
-    instead = None if placebo is None else ' and '.join(placebo.names)
-    comparison = holdout_comparison(ready, base, refits[0], refits[1], kept_back, instead)
-    if best is not None and best.refit is not None:
-        held_out = on_holdout(ready, base, best.refit, kept_back, options.errors)
-        worse = [own.name for own in held_out if own.is_worse(options, len(held_out))]
-        decision = decide(posterior, options, worse)
-        known = replace(known, held_out=held_out)
+    comparison, held_out = _on_holdout(ready, base, posterior, best, halves, options)
+    worse = [own.name for own in held_out if own.is_worse(options, len(held_out))]
+    decision = decide(posterior, options, worse)
     checks, proposals = _advice(predictor, seen, posterior, decision, on_progress)
     return replace(
         known,
@@ -171,6 +170,7 @@ def diagnose_windows(
         among=decision.among,
         best=best,
         holdout=comparison,
+        held_out=held_out,
         checks=checks,
         proposals=proposals,
     )
@@ -200,6 +200,29 @@ def _moved(predictor: Predictor, base: Refit) -> BoardsMoved:
                 changed['depth'].append(float(own))
     spread, depth = (float(np.mean(own)) if own else 0.0 for own in changed.values())
     return BoardsMoved(float(in_std[largest]), COEFFICIENTS[largest], spread, depth)
+
+
+def _on_holdout(
+    predictor: Predictor,
+    base: Refit,
+    posterior: Posterior,
+    best: Explanation | None,
+    halves: Split,
+    options: InferenceOptions,
+) -> tuple[HoldoutComparison | None, tuple[QuantityOnHoldout, ...]]:
+    """Compare the errors on the windows kept back, by channel and by quantity."""
+    if not halves.kept_back:
+        return None, ()
+    placebo = _placebo(posterior, best)
+    alone, repaired, other = (
+        None if own is None else without_kept_back(own, halves)
+        for own in (base, *(None if one is None else one.refit for one in (best, placebo)))
+    )
+    instead = None if placebo is None else ' and '.join(placebo.names)
+    comparison = holdout_comparison(predictor, alone, repaired, other, halves.kept_back, instead)
+    if alone is None or repaired is None:
+        return comparison, ()
+    return comparison, on_holdout(predictor, alone, repaired, halves.kept_back, options.errors)
 
 
 def _placebo(posterior: Posterior, best: Explanation | None) -> Explanation | None:

@@ -31,7 +31,6 @@ BOTH_BOARDS = np.array([1.0, 1.0])
 SENSOR_ERRORS = {
     'offset': ('shows too much or too little, by a constant amount', 'any tow'),
     'scale': ('has a scale error', 'what changes the channel'),
-    'hours': ('drifts during the tow', 'time in the tow'),
 }
 """Kind of sensor error → words for it, and what excites it."""
 
@@ -274,16 +273,12 @@ class SensorError(EmpiricalTerm):
     def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
         """Return the readings with the channel's error."""
         (value,), there = values, readings[self.channel]
-        error = {
-            'offset': value,
-            'scale': value * there,
-            'hours': value * at.hours,
-        }[self.by]
+        error = value * there if self.by == 'scale' else value
         return readings | {self.channel: there + error}
 
 
 def sensor_terms() -> Iterator[EmpiricalTerm]:
-    """Yield all sensor terms: three of each channel."""
+    """Yield all sensor terms: two of each channel."""
     for name in MEASURED:
         channel = CHANNELS[name]
         usual = usual_error(name)
@@ -293,7 +288,7 @@ def sensor_terms() -> Iterator[EmpiricalTerm]:
             yield SensorError(
                 name=f'empirical_{name}_{by}',
                 sentence=f'The sensor of {words} {reading}.',
-                parameters=size(unit + (' per h' if by == 'hours' else ''), std, 20.0 * std),
+                parameters=size(unit, std, 20.0 * std),
                 excited_by=excited_by,
                 reading=f'a sensor of {words} that {reading}',
                 channel=name,

@@ -70,6 +70,21 @@ def test_a_prior_that_ends_at_nothing_counts_what_lies_beyond(made):
     assert np.exp(each).mean() == pytest.approx(np.exp(free))
 
 
+def test_a_cause_that_somebody_finds_is_not_of_size_zero(made):
+    found, *_ = made
+    values = np.zeros(1), np.ones(1), np.full(1, -50.0), np.full(1, 50.0)
+    normal, moment = Chosen((0,), *values), Chosen((0,), *values, parts=(np.array([0]),))
+    size = np.zeros(VALUES)
+    quiet = type(found)(found.information, np.zeros(VALUES))
+    size[0] = 5.0
+    loud = type(found)(found.information, found.information @ size)
+    # Readings that show nothing speak against it the more, and those that show it for it.
+    assert log_factor(quiet, moment) < log_factor(quiet, normal)
+    assert log_factor(loud, moment) > log_factor(loud, normal)
+    blind = type(found)(np.zeros((VALUES, VALUES)), np.zeros(VALUES))
+    assert log_factor(blind, moment) == pytest.approx(log_factor(blind, normal))
+
+
 def test_something_else_is_found_by_its_patterns(made):
     found, *_ = made
     quiet = unknown(type(found)(found.information, np.zeros(VALUES)), InferenceOptions())

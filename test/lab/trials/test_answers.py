@@ -20,3 +20,9 @@ def test_each_hidden_cause_has_leaves_of_the_library_or_is_outside():
         # A gear without floats has no buoyancy in its file.
         assert not right or set(right) & leaves, cause
         assert bool(right_nodes(cause)) == bool(right)
+
+
+def test_the_edge_of_a_current_and_a_log_that_drifts_are_one_thing_and_a_tide_another():
+    assert set(right_leaves('edge_of_current')) == {'current_along_track', 'log_drift'}
+    assert right_nodes('edge_of_current') == ('water/speed',)
+    assert right_leaves('tide') == ('current_in_time',)

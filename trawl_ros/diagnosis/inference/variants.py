@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.special import ndtr
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.diagnosis.inference.marginal import Marginal
 from trawl_ros.diagnosis.library.entries import Entry
 
@@ -34,6 +34,8 @@ class Variant:
         Normal prior and bounds, in the std of the table, about the start.
     weight
         Logarithm of its share of the hypothesis.
+    strength : (k,) array
+        True for values that are not 0 together where the cause is there.
     """
 
     places: tuple[int, ...]
@@ -42,6 +44,7 @@ class Variant:
     low: FloatArray
     high: FloatArray
     weight: float
+    strength: BoolArray
 
 
 def variants_of(entry: Entry, start: FloatArray, *, alone: bool) -> tuple[Variant, ...]:
@@ -57,10 +60,11 @@ def variants_of(entry: Entry, start: FloatArray, *, alone: bool) -> tuple[Varian
         True if one value may differ alone; False where one is the place of another.
     """
     own = entry.effect.parameters
+    single = [place for place in entry.places if own[place].strength]
     choices: list[tuple[tuple[int, ...], float]] = [(entry.places, 1.0)]
     if alone and len(entry.places) > 1:
-        share = 0.5 / len(entry.places)
-        choices = [(entry.places, 0.5), *(((place,), share) for place in entry.places)]
+        share = 0.5 / len(single)
+        choices = [(entry.places, 0.5), *(((place,), share) for place in single)]
     found = []
     for places, share in choices:
         chosen = [own[place] for place in places]
@@ -68,13 +72,15 @@ def variants_of(entry: Entry, start: FloatArray, *, alone: bool) -> tuple[Varian
         begin = np.array([start[place] for place in places])
         low = (np.array([parameter.low for parameter in chosen]) - begin) / std
         high = (np.array([parameter.high for parameter in chosen]) - begin) / std
+        strength = np.array([parameter.strength for parameter in chosen])
         if any(parameter.whole for parameter in chosen):
             whole = (1.0 - begin) / std
-            found.append(Variant(places, whole, WHOLE_STD / std, low, high, float(np.log(share))))
+            weight = float(np.log(share))
+            found.append(Variant(places, whole, WHOLE_STD / std, low, high, weight, strength))
             continue
         found += [
             Variant(places, np.zeros(len(std)), np.full(len(std), size), low, high,
-                    float(np.log(share * part)))
+                    float(np.log(share * part)), strength)
             for size, part in SIZE_MIXTURE
         ]  # fmt: skip
     return tuple(found)
@@ -82,7 +88,10 @@ def variants_of(entry: Entry, start: FloatArray, *, alone: bool) -> tuple[Varian
 
 @dataclass(frozen=True)
 class Chosen:
-    """Values of several hypotheses together, one variant of each; places are absolute."""
+    """Values of several hypotheses together, one variant of each; places are absolute.
+
+    ``parts`` are the places, among these values, of the strength of each hypothesis.
+    """
 
     places: tuple[int, ...] = ()
     mean: FloatArray = field(default_factory=lambda: np.zeros(0))
@@ -90,6 +99,7 @@ class Chosen:
     low: FloatArray = field(default_factory=lambda: np.zeros(0))
     high: FloatArray = field(default_factory=lambda: np.zeros(0))
     weight: float = 0.0
+    parts: tuple[IntArray, ...] = ()
 
     def joined(self, block: range, variant: Variant) -> 'Chosen':
         """Return these with a variant of one more hypothesis, whose values stand at a block."""
@@ -100,6 +110,7 @@ class Chosen:
             np.concatenate((self.low, variant.low)),
             np.concatenate((self.high, variant.high)),
             self.weight + variant.weight,
+            (*self.parts, len(self.places) + np.flatnonzero(variant.strength)),
         )
 
 
@@ -108,7 +119,18 @@ def log_factor(found: Marginal, chosen: Chosen) -> float:
     factor, mean, covariance = found.posterior(chosen.places, chosen.mean, chosen.std)
     std = np.sqrt(np.diag(covariance))
     inside = _inside(chosen, mean, std) - _inside(chosen, chosen.mean, chosen.std)
-    return factor + inside + chosen.weight
+    return factor + inside + _moment(chosen, mean, std) + chosen.weight
+
+
+def _moment(chosen: Chosen, mean: FloatArray, std: FloatArray) -> float:
+    """Return the log Bayes factor of a moment prior over the normal one.
+
+    A cause that somebody finds is not of size 0: its prior is the normal one times a² (Johnson and
+    Rossell 2010, doi:10.1111/j.1467-9868.2009.00730.x). The factor is the mean of a² after the
+    readings over that before, averaged over the strengths of a cause.
+    """
+    ratio = (mean**2 + std**2) / (chosen.mean**2 + chosen.std**2)
+    return sum(float(np.log(np.mean(ratio[part]))) for part in chosen.parts)
 
 
 def _inside(chosen: Chosen, mean: FloatArray, std: FloatArray) -> float:

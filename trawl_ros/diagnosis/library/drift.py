@@ -103,7 +103,7 @@ def _drift(
         sentence=f'{words.capitalize()} drift through each tow.',
         parameters=(
             Parameter('rate', f'{unit} per h', 0.0, -bound, bound, usual),
-            Parameter('first', unit, 0.0, -bound, bound, usual),
+            Parameter('first', unit, 0.0, -bound, bound, usual, strength=False),
         ),
         excited_by='time in the tow',
         direct='Tow one state at the beginning of a tow and again at its end: a sensor that '

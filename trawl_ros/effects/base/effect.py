@@ -43,6 +43,8 @@ class Parameter:
         Prior standard deviation about the neutral value, assumed; scales the estimate.
     whole
         True for an all-or-nothing share: it is really 0 or 1.
+    strength
+        False for a number that alone makes no effect of this kind: a first error without a rate.
 
     Examples
     --------
@@ -58,6 +60,7 @@ class Parameter:
     high: float
     std: float
     whole: bool = False
+    strength: bool = True
 
 
 @dataclass(frozen=True)

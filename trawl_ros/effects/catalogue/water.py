@@ -32,9 +32,6 @@ SHEAR_DEPTH_STEP_M = 100.0
 SHEAR_END_M = 2000.0
 """Depth below which a sheared current stays constant."""
 
-TURN_STARTS_H = (1.0, 2.5)
-"""Hours into the tow from which the search for the turn of the current begins."""
-
 GROUND_ROUNDING_M = 4.0
 """Range of depth over which the ground takes hold of a weight."""
 
@@ -103,7 +100,7 @@ class BottomContact(Effect):
 
 @dataclass(frozen=True)
 class ChangingCurrent(Effect):
-    """Current below the log that changes linearly with the hours in the tow, and turns once.
+    """Current below the log that changes linearly with the hours in the tow, from a first one.
 
     A current that changes from place to place (``in_place``) is met in the reverse order on the
     reciprocal track, and from the other end: for the ship it is the same. A current that changes
@@ -112,15 +109,11 @@ class ChangingCurrent(Effect):
 
     in_place: bool = True
 
-    def starts(self, depths: FloatArray) -> tuple[FloatArray, ...]:
-        """Return start values: the current may turn early or late."""
-        return tuple(np.array([0.0, turn]) for turn in TURN_STARTS_H)
-
     def gear(self, values: FloatArray, model: 'GearModel', at: Situation) -> 'GearModel':
         """Return the gear model in the current of the situation's hours."""
-        rate, turn = values
+        rate, first = values
         ahead = at.sense * at.along if self.in_place else at.along
-        return _with_deep_current(model, LOG_LAYER_M, rate * (at.hours - turn) * ahead)
+        return _with_deep_current(model, LOG_LAYER_M, (rate * at.hours + first) * ahead)
 
 
 class CrossCurrent(Effect):
@@ -165,7 +158,7 @@ def _changing(name: str, sentence: str, causes: str, *, in_place: bool) -> Chang
         sentence=sentence,
         parameters=(
             Parameter('rate', 'm/s per h', 0.0, -0.5, 0.5, 0.05),
-            Parameter('turn', 'h', 0.0, -6.0, 12.0, 2.0),
+            Parameter('first', 'm/s', 0.0, -0.8, 0.8, 0.1, strength=False),
         ),
         excited_by='time in the tow; the same warp length and speed early and late',
         confused_with=('catch_build_up', 'speed_log', 'current_shear'),
@@ -182,7 +175,7 @@ EFFECTS = (
         sentence='Below a depth the lower wing tips drag over the bottom.',
         parameters=(
             Parameter('friction', 'N', 0.0, 0.0, 10e3, 2e3),
-            Parameter('depth', 'm', 0.0, 0.0, 2000.0, 50.0),
+            Parameter('depth', 'm', 0.0, 0.0, 2000.0, 50.0, strength=False),
         ),
         excited_by='depth near the bottom',
         confused_with=('net_drag', 'gear_weight'),

@@ -14,7 +14,7 @@ from scipy.stats import norm
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.diagnosis.holdout import holdout_comparison, predicted
+from trawl_ros.diagnosis.holdout import holdout_comparison, predicted, without_kept_back
 from trawl_ros.diagnosis.inference.blocks import blocks_of
 from trawl_ros.diagnosis.inference.candidates import signatures
 from trawl_ros.diagnosis.inference.decision import Decision, NamedCause, decide
@@ -139,7 +139,8 @@ def bic(ready: Prepared, options: BaselineOptions) -> AnswerRecord:
         return made
     repair = decision.best.refit
     predictor = ready_for(ready.predictor, [own.effect for own in repair.wanted])
-    comparison = holdout_comparison(predictor, ready.base, repair, None, ready.halves.kept_back)
+    alone, repaired = (without_kept_back(own, ready.halves) for own in (ready.base, repair))
+    comparison = holdout_comparison(predictor, alone, repaired, None, ready.halves.kept_back)
     return with_repair(made, comparison, ready.base, repair)
 
 
@@ -172,15 +173,15 @@ def clean_regime(ready: Prepared, options: BaselineOptions) -> AnswerRecord:
     """Fit boards to the clean regime; select a cause by hold-out, and confirm it by an F-test.
 
     The recipe of LISDD (arXiv 2606.23215) with the baseline tows as the clean regime, or all
-    deciding windows without a baseline. The boards are held. Each cause is fitted to one half of
-    the examined deciding windows and predicts the other half; the one with the least error is
-    confirmed on the held-out windows.
+    windows without a baseline. The boards are held. Each cause is fitted to one half of the
+    examined windows that are not held out and predicts the other half. The one with the least
+    error is confirmed on the held-out windows.
     """
-    in_baseline = [own for own in ready.halves.deciding if own.tow in ready.data.baseline]
+    in_baseline = [own for own in ready.halves.fitted if own.tow in ready.data.baseline]
     prior = board_prior(ready.data.gear)
     fitted = fit_boards(ready.predictor, prior, in_baseline) if in_baseline else None
     clean = fitted or ready.base
-    examined = [own for own in ready.halves.deciding if own.tow not in ready.data.baseline]
+    examined = [own for own in ready.halves.fitted if own.tow not in ready.data.baseline]
     parts = [
         _whitened(ready, clean, windows)
         for windows in (examined[::2], examined[1::2], ready.halves.kept_back)

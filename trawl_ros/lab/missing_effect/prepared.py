@@ -48,9 +48,9 @@ class Prepared:
     predictor
         Model of the gear as it is known aboard.
     halves
-        Deciding and held-out windows.
+        Windows kept back in the comparison of errors, and the others.
     base
-        Fit of the boards alone to the deciding windows.
+        Fit of the boards alone to all windows.
     screen
         All hypotheses of the library to first order.
     seconds
@@ -71,7 +71,7 @@ def prepare(data: TrialInput) -> Prepared | None:
     windows, _ = standing(data.windows, data.tows)
     halves = split(windows, data.baseline)
     predictor = Predictor(build_model(data.gear), effects_of(data.gear), without=data.baseline)
-    base = fit_boards(predictor, board_prior(data.gear), halves.deciding)
+    base = fit_boards(predictor, board_prior(data.gear), windows)
     if base is None:
         return None
     examined = [window for window in windows if window.tow not in data.baseline]

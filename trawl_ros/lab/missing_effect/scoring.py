@@ -200,12 +200,15 @@ def _median(values: Sequence[float]) -> float:
 
 
 def cause_rows(cases: Sequence[Case]) -> list[MeasuredValue]:
-    """Return what was answered of each hidden cause."""
+    """Return what was answered of each hidden cause; of one outside the library, with caution."""
     rows = []
     for words in sorted({truth.words for truth, _ in cases if truth.causes}):
         own = [case for case in cases if case[0].words == words]
         said = '; '.join(f'{truth.strength:g} ×: {_said(answer)}' for truth, answer in own)
-        rows.append(rate(f'{words}: right', [is_right(case) for case in own], note=said))
+        right = [
+            _is_cautious(case) if case[0].series == 'outside' else is_right(case) for case in own
+        ]
+        rows.append(rate(f'{words}: right', right, note=said))
     return rows
 
 

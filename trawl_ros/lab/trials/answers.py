@@ -34,8 +34,8 @@ LEAVES_OF_OUTSIDE: Mapping[str, tuple[str, ...]] = {
 SAME_IN_ANOTHER_FORM: Mapping[str, tuple[str, ...]] = {
     'current_shear': ('current_profile_along',),
     'cross_current': ('current_profile_across',),
-    'tide': ('log_drift',),
-    'edge_of_current': ('current_in_time',),
+    # The log's error and the edge of a current follow the heading; a tide does not.
+    'edge_of_current': ('log_drift',),
     'catch_build_up': ('catch',),
     'board_mass': ('board_weight',),
     'kite_gone': ('kite_setting',),

@@ -52,7 +52,7 @@ SIZE_TOLERANCE = 0.05
 
 @dataclass(frozen=True)
 class Likelihood:
-    """Likelihood of the plant, linearised around its board in the deciding windows."""
+    """Likelihood of the plant, linearised around its board in the fitted windows."""
 
     plant: Plant
     fit: Fit
@@ -158,16 +158,16 @@ def likelihood(
         Prior of the boards.
     windows
         All windows of the plan, with nothing hidden and without noise, their indices in the order
-        of the plan; those that decide are used.
+        of the plan; those that are not held out are used.
     plan
         Tows of the trial.
     """
-    deciding = {window.index for window in split(windows, frozenset(range(plan.baseline))).deciding}
+    fitted = {window.index for window in split(windows, frozenset(range(plan.baseline))).fitted}
     rows = [OBSERVABLES.index(name) for name in SENSED_CHANNELS]
     parts = []
     states = [state for tow in plan.tows for state in tow.states]
     for window, state in zip(windows, states, strict=True):
-        if window.index not in deciding:
+        if window.index not in fitted:
             continue
         clean = plant.clean[state]
         parts.append(

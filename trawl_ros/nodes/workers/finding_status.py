@@ -29,7 +29,7 @@ def finding_statuses(diagnosis: Diagnosis) -> list[Status]:
     values = {
         'verdict': diagnosis.verdict,
         'reason': diagnosis.reason,
-        'windows': str(len(diagnosis.split.deciding) + len(diagnosis.split.kept_back)),
+        'windows': str(len(diagnosis.split.fitted) + len(diagnosis.split.kept_back)),
         'tows': str(len(diagnosis.tows)),
     }
     if posterior is not None:
