@@ -233,8 +233,8 @@ def set_door(
 
     if not file.is_file():
         raise GearError(
-            f'{file}: no such file, expected a gear file of your own: trawl gear copy GEAR {file} '
-            'makes one'
+            f'{file}: no such file, expected a gear file of your own: '
+            '`trawl gear copy GEAR FILE` makes one'
         )
     old, published = load_gear(file), load_door(door)
     with ProgressDisplay(error_console()) as display:
