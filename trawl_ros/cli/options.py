@@ -39,8 +39,9 @@ class Number(click.FloatRange):
 
     def _describe_range(self) -> str:
         """Describe the range in help and errors, with its unit."""
-        low, high = (f'{bound / self.unit_size:.10g}' for bound in (self.min, self.max))
-        return f'{low} to {high} {self.unit}'.rstrip()
+        bounds = (bound for bound in (self.min, self.max) if bound is not None)
+        numbers = ' to '.join(f'{bound / self.unit_size:.10g}' for bound in bounds)
+        return f'{numbers} {self.unit}'.rstrip()
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
