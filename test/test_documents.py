@@ -6,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from count_words import count_words
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / 'trawl_ros'
@@ -13,6 +14,9 @@ DOCUMENTS = [*sorted(ROOT.glob('*.md')), *sorted((ROOT / 'docs').rglob('*.md'))]
 FOLDERS = {path.name for base in (ROOT, PACKAGE) for path in base.iterdir() if path.is_dir()}
 PLACEHOLDER = re.compile(r'[A-Z]{3,}')
 """A name that the reader is to put in, as in ``config/gear/NAME.yaml``."""
+MOST_WORDS = 28_000
+"""Longest that all pages by hand may be: CONTRIBUTING.md."""
+MOST_WORDS_OF_README = 700
 
 
 def names(document: Path) -> Iterator[str]:
@@ -57,3 +61,28 @@ def test_each_link_leads_somewhere(document: Path) -> None:
     # The overview is the README, which the site takes in when it is built.
     own = [link for link in links if not re.match(r'\w+:|(\.\./)?overview\.md', link)]
     assert [link for link in own if not (document.parent / link).exists()] == []
+
+
+def test_pages_by_hand_are_short() -> None:
+    words = count_words()
+    assert words['README.md'] <= MOST_WORDS_OF_README
+    assert sum(words.values()) <= MOST_WORDS, 'python test/tools/count_words.py counts each page'
+
+
+def linked_pages(page: Path) -> set[Path]:
+    links = re.findall(r'\]\(([^)#\s:]+\.md)', page.read_text('utf-8'))
+    return {(page.parent / link).resolve() for link in links}
+
+
+@pytest.mark.parametrize('start', ['README.md', 'docs/index.md'])
+def test_answers_to_a_strangers_questions_are_two_clicks_away(start: str) -> None:
+    near = {ROOT / start} | linked_pages(ROOT / start)
+    near |= set().union(*map(linked_pages, near))
+    _, questions = (ROOT / 'CONTRIBUTING.md').read_text('utf-8').split('## Ten questions')
+    answers = {
+        (ROOT / link).resolve()
+        for row in re.findall(r'^\| .+\? \| (.+) \|$', questions, re.MULTILINE)
+        for link in re.findall(r'\]\(([^)#\s]+)', row)
+    }
+    assert len(answers) >= 10
+    assert answers - near == set()

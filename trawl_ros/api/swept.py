@@ -137,7 +137,10 @@ def swept_of_samples(samples: Iterable[Sample], gear: GearRecord) -> tuple[Swept
     series = _series(samples)
     for name, other in (('port_length', ''), ('door_spread', ''), ('speed', 'ground_east')):
         if name not in series and other not in series:
-            raise BagError(f'no readings on {CHANNELS[name].topic}; expected them for swept areas')
+            raise BagError(
+                f'no readings on {CHANNELS[name].topic}, expected them for swept areas; '
+                '`trawl bag check` lists what a bag lacks'
+            )
     edges = _fishing(series)
     on = {name: _means(edges, *pair) for name, pair in series.items()}
     parts = np.ones(len(edges) - 1)

@@ -113,7 +113,7 @@ def export_bag(
             for field, reason in table.layout.left_out.items()
         ]
         known = '; '.join([*bag.problems, *reasons]) or 'no message'
-        raise BagError(f'{bag.path}: gives no table rows ({known})')
+        raise BagError(f'{bag.path}: gives no table rows ({known}), expected at least one message')
     with written_folder(folder, BagError) as draft:
         draft.mkdir()
         tables = _write(bag, draft, layouts, on_progress)

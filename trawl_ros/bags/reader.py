@@ -188,7 +188,10 @@ class Bag:
                 yield stored
         if empty:
             known = f' ({"; ".join(self.problems)})' if self.problems else ''
-            raise BagError(f'{self.path}: holds no message that can be read{known}')
+            raise BagError(
+                f'{self.path}: holds no message that can be read{known}, expected at least one; '
+                '`trawl bag repair` saves what is left of a damaged bag'
+            )
 
     def as_stored(self) -> Iterator[RawMessage]:
         """Yield all messages undecoded and unchecked, of any type; there may be none."""

@@ -13,7 +13,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from trawl_ros.bags.sources import check_topics
+from trawl_ros.bags.sources import check_topics, no_bag, refuse_missing
 from trawl_ros.bags.storage.chunks import Allowance
 from trawl_ros.bags.storage.decoding import BagTypes, Decoder
 from trawl_ros.bags.storage.mcap_file import McapFile
@@ -129,8 +129,7 @@ class _Damaged:
     """Damaged bag, and its faults."""
 
     def __init__(self, path: Path) -> None:
-        if not path.exists():
-            raise BagError(f'{path}: no such bag')
+        refuse_missing(path)
         self.path = path
         self.problems: list[str] = []
         self.read: Counter[str] = Counter()
@@ -144,10 +143,8 @@ class _Damaged:
         self.files = [file for name in self._names() if (file := self._open(name))]
         check_topics(path, set[tuple[str, str]]().union(*(file.types() for file in self.files)))
         if not self.files:
-            raise BagError(
-                f'{path}: no MCAP file that can be read; expected at least one '
-                f'({"; ".join(self.problems) or "there is none"})'
-            )
+            why = '; '.join(self.problems)
+            raise BagError(why or f'{path}: no MCAP file that can be read; expected at least one')
 
     @property
     def custom_data(self) -> dict[str, str]:
@@ -258,11 +255,12 @@ class _Damaged:
     def _check_kind(self) -> None:
         known = self._metadata
         if self.path.is_dir() and not any(self.path.glob('*.mcap*')):
-            databases = any(self.path.glob('*.db3'))
-            raise BagError(
-                f'{self.path}: no MCAP file; expected at least one'
-                + (' (sqlite3 itself recovers databases)' if databases else '')
-            )
+            if any(self.path.glob('*.db3')):
+                raise BagError(
+                    f'{self.path}: found no MCAP file, expected at least one; '
+                    '`sqlite3 FILE.db3 .recover` repairs databases'
+                )
+            raise BagError(no_bag(self.path))
         if known and known.compression_mode.lower() not in ('', 'none', 'message'):
             raise BagError(
                 f'{self.path}: compressed per {known.compression_mode.lower()}; expected MCAP '

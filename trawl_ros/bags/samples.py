@@ -59,11 +59,8 @@ class SampleStream:
     def _read(self, path: Path) -> Iterator[Sample]:
         bag = Bag(path, namespace=self.namespace)
         names = {absolute(name, self.namespace): name for name in self.topics}
-        if names.keys().isdisjoint(bag.topics) and (others := _namespaces(bag, self.topics)):
-            raise BagError(
-                f'{path}: found no readings in /{self.namespace.strip("/")}, but in '
-                f'{" and ".join(others)}; expected --namespace {others[0].strip("/")}'
-            )
+        if names.keys().isdisjoint(bag.topics):
+            raise BagError(f'{path}: {_no_readings(bag, self.namespace, self.topics)}')
         refused: Counter[str] = Counter()
         reasons: dict[str, str] = {}
         watches = {name: SourceWatch() for name in self.topics}
@@ -93,8 +90,24 @@ class SampleStream:
             )
 
 
+def _no_readings(bag: Bag, namespace: str, topics: Sequence[str]) -> str:
+    """Say where the readings of a bag may be, of which none is on these topics."""
+    said = f'found no readings in /{namespace.strip("/")}'
+    if others := _namespaces(bag, topics):
+        return f'{said}, but in {" and ".join(others)}; expected --namespace {others[0].strip("/")}'
+    names = sorted(bag.topics)
+    found = f'topics such as {", ".join(names[:3])}' if names else 'no topic at all'
+    return (
+        f'{said}, but {found}; expected topics such as {absolute(topics[0], namespace)}. '
+        '`trawl bag info` lists the topics of a bag; give a bag that recorded instruments'
+    )
+
+
 def _namespaces(bag: Bag, topics: Sequence[str]) -> list[str]:
-    """Return the namespaces in which a bag has some of these topics, without their last slash."""
+    """Return the namespaces in which a bag has some of these topics, without their last slash.
+
+    The truth of a simulation has topics of the same names, but is no reading.
+    """
     ends = tuple(f'/{name}' for name in topics)
     found = (
         topic.removesuffix(end) or '/'
@@ -102,4 +115,4 @@ def _namespaces(bag: Bag, topics: Sequence[str]) -> list[str]:
         for end in ends
         if topic.endswith(end)
     )
-    return list(dict.fromkeys(found))
+    return [name for name in dict.fromkeys(found) if not name.endswith('/truth')]

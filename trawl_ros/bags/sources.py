@@ -18,6 +18,7 @@ from trawl_ros.bags.storage.stored import Definition, RawMessage
 from trawl_ros.core.errors import BagError
 from trawl_ros.core.foreign import one_line
 from trawl_ros.core.limits import BAG_FILES, BAG_TOPICS, NAME
+from trawl_ros.core.resources import names_in, nearest, share_path
 
 Report = Callable[[str], None]
 
@@ -223,17 +224,42 @@ def open_source(path: Path, report: Report, *, lenient: bool = False) -> BagSour
         If there is none, or, unless ``lenient``, a file of it is missing or metadata and
         content disagree.
     """
-    if not path.exists():
-        raise BagError(f'{path}: no such bag')
+    refuse_missing(path)
     if not path.is_dir():
         return BagSource([_open_file(path, report)], None, report)
     metadata = _metadata(path, report, lenient)
     if metadata is None:
         files = sorted(file for suffix in SUFFIXES for file in path.glob(f'*{suffix}'))
         if not files:
-            raise BagError(f'{path}: neither {FILE_NAME} nor an .mcap file; expected a bag')
+            raise BagError(no_bag(path))
         return BagSource([_open_file(file, report) for file in files], None, report)
     return _by_metadata(path, metadata, report, lenient)
+
+
+def refuse_missing(path: Path) -> None:
+    """Refuse a path that leads nowhere, with the nearest name.
+
+    Raises
+    ------
+    BagError
+        If there is nothing of this name.
+    """
+    if not path.exists():
+        near = nearest(path.name, [*names_in(path.parent), *names_in(share_path('bags'))])
+        raise BagError(f'{path}: no such bag, expected {BagError.expected}{near}')
+
+
+def no_bag(folder: Path) -> str:
+    """Say what was found in a folder that is no bag, and what to give instead."""
+    names = names_in(folder)
+    found = f'found {", ".join(names[:5])}{" …" * (len(names) > 5)}' if names else 'empty folder'
+    bags = [name for name in names if (folder / name / FILE_NAME).is_file()]
+    instead = (
+        f'; give {folder / bags[0]}'
+        if bags
+        else '; `trawl import-log` makes a bag of a log of another kind'
+    )
+    return f'{folder}: {found}, expected a bag: {BagError.expected}{instead}'
 
 
 def _by_metadata(path: Path, metadata: BagMetadata, report: Report, lenient: bool) -> BagSource:

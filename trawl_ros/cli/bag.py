@@ -81,7 +81,7 @@ def info(bag: Path, as_json: bool) -> None:
 def check(
     context: click.Context, bag: Path, require: tuple[str, ...], namespace: str, as_json: bool
 ) -> None:
-    """Check BAG against its own metadata and against the topics of the project.
+    """Check BAG against its metadata and the topics of the project.
 
     Exit codes: 0 without findings, 3 with findings, 1 if the bag cannot be read.
 
@@ -132,7 +132,7 @@ def compare(
     namespace: str,
     force: bool,
 ) -> None:
-    """Compare the bags A and B, measured or simulated, sensor by sensor.
+    """Compare the bags A and B sensor by sensor.
 
     Only the water of --gear is used, which converts pressures to depths. Differences are A minus B.
     """
@@ -205,7 +205,7 @@ def export(
     every_reading: bool,
     namespace: str,
 ) -> None:
-    """Export BAG to CSV files, one per topic, or to a log of sentences.
+    """Export BAG to CSV files or to a log of sentences.
 
     The name of a column is the path of its field; columns.csv lists the units. Times are given in
     seconds and in whole nanoseconds. A cell without a reading is empty. With --as, the command
@@ -264,7 +264,7 @@ def _print_sentences(done: SentenceLog) -> None:
 )
 @click.pass_context
 def repair(context: click.Context, bag: Path, out: Path | None) -> None:
-    """Make a complete bag from one that was cut short, is damaged, or has wrong metadata.
+    """Make a sound bag of what is left of a damaged one.
 
     BAG is the folder of a bag or one MCAP file of it, and is not changed. All data with a correct
     checksum go into a new bag, with indexes and metadata.

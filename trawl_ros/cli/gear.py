@@ -26,7 +26,7 @@ EXIT_FINDINGS = 3
 
 @click.group('gear')
 def command() -> None:
-    """Check gear files, find their steady states, and make them from net plans."""
+    """Check, copy and change gear files, find their steady states, and read net plans."""
 
 
 @command.command('check')
@@ -138,11 +138,11 @@ def _print_plan(plan: 'NetPlanRecord', found: 'GearCheck', console: Console) -> 
 )
 @UNITS_OPTION
 def state(gear: str, warp: float, speed: float, units: DisplayUnits) -> None:
-    """Print the steady state of GEAR, or the reason why there is none and what would help.
+    """Print the steady state of GEAR, or why there is none.
 
-    If there is no usable state, the command prints the reason, the speed from which the gear can be
-    towed on this warp, and changes of weights, floats, bridles, fastening points, warp or boards
-    that make it usable. Each change was solved. The exit code is then 1.
+    GEAR is a gear file or the name of a gear of the package. If there is no usable state, the
+    command prints the reason, the speeds at which the gear can be towed on this warp, and changes
+    of the gear that help. Each change was solved. The exit code is then 1.
     """
     from trawl_ros.core.errors import NoSteadyState
     from trawl_ros.gear.load import load_gear
@@ -167,7 +167,7 @@ def state(gear: str, warp: float, speed: float, units: DisplayUnits) -> None:
 @command.command('import')
 @click.argument('plan', type=FILE)
 def import_plan(plan: Path) -> None:
-    """Convert a net plan from a table to the section of a gear file, and print it.
+    """Print the net plan of a table as lines of a gear file.
 
     PLAN is a CSV file with one row per piece. Its columns are the keys of a piece: part, panel,
     section, mesh_mm, front_meshes, back_meshes, long_meshes, rtex or twine_diameter_mm, material,
@@ -201,7 +201,10 @@ def doors() -> None:
 @click.argument('gear', metavar='GEAR')
 @click.argument('file', type=FILE)
 def copy(gear: str, file: Path) -> None:
-    """Copy GEAR, a file or the name of a gear of the package, to a new FILE of your own."""
+    """Copy GEAR to a new FILE of your own.
+
+    GEAR is a gear file or the name of a gear of the package.
+    """
     from trawl_ros.gear.door_text import copy_gear
 
     copy_gear(gear, file)
@@ -213,12 +216,14 @@ def copy(gear: str, file: Path) -> None:
 @click.argument('door')
 @click.option('--warp', required=True, type=WARP, help='Warp length of a usual tow, m.')
 @click.option('--speed', required=True, type=SPEED, help='Its speed through the water, m/s.')
-@click.option('--area', type=Number(0.1, 100.0), help='Area of the new plate, m²; else it stays.')
+@click.option(
+    '--area', type=Number(0.1, 100.0), help='Area of the new plate, m²; by default that of FILE.'
+)
 @UNITS_OPTION
 def set_door(
     file: Path, door: str, warp: float, speed: float, area: float | None, units: DisplayUnits
 ) -> None:
-    """Put a door of the catalogue on the gear in FILE, and change FILE.
+    """Put a door of the catalogue on the gear in FILE.
 
     The command finds shackle points at which the boards have a usable steady state at --warp and
     --speed, and prints what it changed. If it finds none, FILE stays as it is, and the command
@@ -233,8 +238,8 @@ def set_door(
 
     if not file.is_file():
         raise GearError(
-            f'{file}: no such file, expected a gear file of your own: trawl gear copy GEAR {file} '
-            'makes one'
+            f'{file}: no such file, expected a gear file of your own: '
+            '`trawl gear copy GEAR FILE` makes one'
         )
     old, published = load_gear(file), load_door(door)
     with ProgressDisplay(error_console()) as display:

@@ -42,15 +42,19 @@ TABLE_COLUMNS = 100
     '--truth', type=SCENARIO, help='Scenario that made the bags; its coefficients are compared '
     'with the estimates.',
 )  # fmt: skip
-@click.option('--no-prior', is_flag=True, help='Fit without the prior, within the bounds.')
+@click.option(
+    '--no-prior',
+    is_flag=True,
+    help='Fit the steady windows without the prior of the gear file, within its bounds.',
+)
 @click.option(
     '--net', is_flag=True, help='Also estimate drag and weight of the net; otherwise those of the '
     'gear file are kept.',
 )  # fmt: skip
 @click.option(
-    '--motion/--steady', default=True, show_default=True, help='Fit the whole tow, including '
-    'hauling and veering, and compare it with the fit of steady windows, which takes minutes per '
-    'hour of tow. With --steady, fit only the windows, which takes seconds.',
+    '--motion/--steady', default=True, show_default=True, help='Fit the whole tow, hauling and '
+    'veering included, which takes minutes per hour of tow; or only its steady windows, which '
+    'takes seconds.',
 )  # fmt: skip
 @UNITS_OPTION
 @NAMESPACE_OPTION
@@ -69,7 +73,7 @@ def command(
     scheduler: str | None,
     force: bool,
 ) -> None:
-    """Refit the twelve board coefficients from BAGS, one bag per tow.
+    """Estimate the twelve hydrodynamic coefficients of the doors from BAGS, one bag per tow.
 
     The command writes report.html, identification.json and figures. For cross-validation each tow
     is left out in turn and predicted from the others; with a single tow, its steady states are left

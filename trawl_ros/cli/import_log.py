@@ -9,6 +9,8 @@ import click
 from trawl_ros.bags.logs.draft import draft_mapping
 from trawl_ros.bags.logs.import_log import import_log
 from trawl_ros.cli.options import NEW_BAG
+from trawl_ros.core.errors import LogError
+from trawl_ros.core.foreign import open_file
 
 
 @click.command('import-log')
@@ -36,11 +38,17 @@ def command(
     LOG is a table, such as CSV, or a file of NMEA 0183 sentences. The mapping determines the kind
     and assigns columns or sentences to topics.
     """
+    with open_file(log, LogError) as content:
+        if not content.read(1):
+            raise LogError(f'{log}: the file is empty, expected a log')
     if draft:
         click.echo(draft_mapping(log), nl=False)
         return
     if mapping is None or out is None:
-        raise click.UsageError('expected --mapping and --out, or --draft')
+        raise click.UsageError(
+            f'found {"neither --mapping nor" if mapping is None else "no"} --out, expected both; '
+            'or --draft, which prints a mapping to begin with'
+        )
     done = import_log(log, mapping, out, leave_out=leave_out)
     rows = 'lines' if done.of_sentences else 'rows'
     click.echo(f'{out}: {sum(done.counts.values())} messages from {done.rows} {rows}')

@@ -21,10 +21,10 @@ from trawl_ros.core.version import __version__
 
 COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        'demo': ('lab.demo.command', 'Tow, record, replay and refit through the real ROS graph.'),
+        'demo': ('lab.demo.command', 'Tow, record, replay and estimate through a ROS graph.'),
         'tow': ('cli.tow', 'Tow a scenario and record its instruments as a bag.'),
         'compare': ('cli.compare', 'Compare logs with a gear file as it is; nothing is fitted.'),
-        'identify': ('cli.identify', 'Refit the twelve board coefficients from recorded bags.'),
+        'identify': ('cli.identify', 'Estimate the twelve door coefficients from recorded bags.'),
         'plan-trial': ('cli.plan_trial', 'Plan the sea trial that determines the boards best.'),
         'diagnose': (
             'cli.diagnose',
@@ -32,7 +32,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         ),
         'effects': ('cli.effects', 'List the effects that a gear may have beyond the model.'),
         'trim': ('cli.trim', 'Find fastening points that give the boards wanted angles.'),
-        'gear': ('cli.gear', 'Check gear files, and make them from net plans.'),
+        'gear': ('cli.gear', 'Check, copy and change gear files, and find steady states.'),
         'validate': ('lab.commands.validate', "Check the model's claims and write the report."),
         'benchmark': (
             'lab.commands.benchmark',
@@ -47,7 +47,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'files': ('cli.files', 'Print or copy the files of the package: gears, scenarios, bag.'),
         'import-log': ('cli.import_log', 'Convert a log from sea, a table or NMEA 0183, to a bag.'),
         'swept': ('cli.swept', 'Compute swept area and volume of hauls, with intervals.'),
-        'bag': ('cli.bag', 'Inspect, check, repair and export bags.'),
+        'bag': ('cli.bag', 'Inspect, check, repair, compare and export bags.'),
         'policy': ('cli.policy', 'Write the access rights of all nodes for SROS 2.'),
         'view': ('cli.view', 'Show the tow of bags in Rerun, in space and over time.'),
         'plot': ('cli.plot', 'Draw the tow of a bag: gear, time series, sonar, track, film.'),
@@ -118,9 +118,10 @@ def _forget_output() -> None:
 @click.group(cls=Trawl, modules=COMMANDS, context_settings={'help_option_names': ['-h', '--help']})
 @click.version_option(__version__, prog_name='trawl')
 def trawl() -> None:
-    """Tow an emulated mid-water trawl, record it, and refit the model of its gear.
+    """Tow an emulated mid-water trawl, record it, and fit the model of its gear to measured tows.
 
-    Scenarios, gears and mappings are files, or names of files of the package.
+    Scenarios, gears, bags and mappings are files, or names of files of the package.
+    `trawl COMMAND --help` explains a command.
     """
 
 

@@ -34,6 +34,15 @@ FOLDER = click.Path(path_type=Path, file_okay=False)
 class Number(click.FloatRange):
     """Number in a range; NaN is refused, which comparisons do not exclude."""
 
+    name = 'number'
+    unit, unit_size = '', 1.0
+
+    def _describe_range(self) -> str:
+        """Describe the range in help and errors, with its unit."""
+        bounds = (bound for bound in (self.min, self.max) if bound is not None)
+        numbers = ' to '.join(f'{bound / self.unit_size:.10g}' for bound in bounds)
+        return f'{numbers} {self.unit}'.rstrip()
+
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
@@ -73,6 +82,7 @@ class QuantityNumber(Number):
     def __init__(self, quantity: str, low: float, high: float) -> None:
         super().__init__(low, high)
         self._quantity = quantity
+        self.unit, self.unit_size = METRIC.symbol(quantity), METRIC.size(quantity)
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -92,9 +102,9 @@ SPEED = QuantityNumber('speed', *LIMITS.speed_m_s)
 
 UNITS_OPTION = click.option(
     '--units', type=UnitsType(), default='metric', show_default=True, is_eager=True,
-    metavar='SYSTEM', help='Units of quantities, printed and read: metric (m, m/s, kN), sea (m, '
-    'knots, tonnes), imperial (fathoms, feet, knots, pounds), or pairs such as '
-    'speed=kn,tension=t,warp=fm. A number may carry its own unit: 250fm, 4kn.',
+    metavar='SYSTEM', help='Units, printed and read: metric (m, m/s, kN), sea (m, knots, tonnes), '
+    'imperial (fathoms, feet, knots, pounds), or pairs such as speed=kn,warp=fm. A number may '
+    'carry its own unit: 250fm, 4kn.',
 )  # fmt: skip
 
 GEAR_OPTION = click.option(
@@ -102,7 +112,10 @@ GEAR_OPTION = click.option(
     'gear of the package.',
 )  # fmt: skip
 NAMESPACE_OPTION = click.option(
-    '--namespace', default=NAMESPACE, show_default=True, help="Namespace of the project's topics."
+    '--namespace',
+    default=NAMESPACE,
+    show_default=True,
+    help='Namespace of the topics that are read.',
 )
 SCHEDULER_OPTION = click.option(
     '--scheduler', help='Address of a Dask cluster for the work. It must see all files under the '

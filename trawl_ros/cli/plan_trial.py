@@ -89,7 +89,7 @@ def command(
 
     GEAR is a gear file or the name of a gear of the package. The command prints the expected
     accuracy, compared with the paper's sweep of warp lengths at one speed. With --out it writes the
-    plan, a scenario for ``trawl tow``, and a picture.
+    plan, a scenario for `trawl tow`, and a picture.
     """
     from trawl_ros.api import trials
     from trawl_ros.estimation.planning.states import Limits

@@ -46,18 +46,18 @@ def _kinds(
 
 @click.command('trim')
 @click.argument('gear', metavar='GEAR')
-@click.option('--attack', type=Number(1.0, 40.0), help='Wanted α, deg.')
+@click.option('--attack', type=Number(1.0, 40.0), help='Wanted attack angle α of the doors, deg.')
 @click.option(
     '--inclination',
     type=Number(-45.0, 60.0),
-    help='Wanted δ, deg; below 0 the boards lean inward.',
+    help='Wanted inclination δ of the doors, deg; below 0 they lean inward.',
 )
 @click.option(
     '--pitch',
     default=0.0,
     show_default=True,
     type=Number(-30.0, 30.0),
-    help='Wanted pitch, nose down, deg.',
+    help='Wanted pitch of the doors, nose down, deg.',
 )
 @click.option('--spread', type=SPREAD, help='Door spread that determines the angles, m.')
 @click.option('--depth', type=DEPTH, help='Door depth that determines the angles, m.')

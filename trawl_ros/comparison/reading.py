@@ -134,7 +134,10 @@ def _why_not(finder: SteadyWindowFinder) -> str:
     """Return the reason in a sentence why a log has no steady state."""
     lacking = dict.fromkeys(CHANNELS[name].topic for name in INPUTS if not finder.readings[name])
     if lacking:
-        return f'no usable readings on {", ".join(lacking)}, expected warp lengths and speed'
+        return (
+            f'no usable readings on {", ".join(lacking)}, expected warp lengths and speed; '
+            '`trawl bag check` says what is wrong with them'
+        )
     counts = ', '.join(f'{reason} {count}' for reason, count in finder.rejected.items())
     return (
         'no steady state: expected warp lengths, speed and heading held for up to '

@@ -6,7 +6,7 @@ Every message names the file, key or topic, what was found and what was expected
 """
 
 from traceback import format_exception
-from typing import Literal
+from typing import ClassVar, Literal
 
 Refusal = Literal[
     'none found',
@@ -24,6 +24,8 @@ Refusal = Literal[
 class TrawlError(Exception):
     """Base class of all input errors; commands print them and exit with 1.
 
+    ``expected`` says what a missing or empty file should be, and how to get one.
+
     Examples
     --------
     >>> import trawl_ros
@@ -34,6 +36,8 @@ class TrawlError(Exception):
     GearError
     """
 
+    expected: ClassVar[str] = 'a file with content'
+
 
 class GearError(TrawlError):
     """Gear file that is missing, unreadable or impossible.
@@ -41,11 +45,13 @@ class GearError(TrawlError):
     Examples
     --------
     >>> import trawl_ros
-    >>> trawl_ros.load_gear('no_such.yaml')
+    >>> trawl_ros.load_gear('no_such.yaml')  # doctest: +ELLIPSIS
     Traceback (most recent call last):
         ...
-    trawl_ros.core.errors.GearError: no_such.yaml: no such file
+    trawl_ros.core.errors.GearError: no_such.yaml: no such file, expected a gear...
     """
+
+    expected = 'a gear, net plan or door (`trawl files --out FOLDER` copies those of the package)'
 
 
 class ScenarioError(TrawlError):
@@ -54,15 +60,19 @@ class ScenarioError(TrawlError):
     Examples
     --------
     >>> import trawl_ros
-    >>> trawl_ros.load_scenario('no_such.yaml')
+    >>> trawl_ros.load_scenario('no_such.yaml')  # doctest: +ELLIPSIS
     Traceback (most recent call last):
         ...
-    trawl_ros.core.errors.ScenarioError: no_such.yaml: no such file
+    trawl_ros.core.errors.ScenarioError: no_such.yaml: no such file, expected a scenario...
     """
+
+    expected = 'a scenario (`trawl files --out FOLDER` copies those of the package)'
 
 
 class InstrumentError(TrawlError):
     """File of instrument parameters that is missing, unreadable or impossible."""
+
+    expected = 'errors of instruments (`trawl files --out FOLDER` copies those of the package)'
 
 
 class MessageError(TrawlError):
@@ -75,19 +85,25 @@ class BagError(TrawlError):
     Examples
     --------
     >>> import trawl_ros
-    >>> trawl_ros.check_bag('no_such_bag')
+    >>> trawl_ros.check_bag('no_such_bag')  # doctest: +ELLIPSIS
     Traceback (most recent call last):
         ...
-    trawl_ros.core.errors.BagError: no_such_bag: no such bag
+    trawl_ros.core.errors.BagError: no_such_bag: no such bag, expected a folder with...
     """
+
+    expected = 'a folder with metadata.yaml and .mcap or .db3 files, or one such file'
 
 
 class LogError(TrawlError):
     """CSV log or mapping that cannot be converted to a bag."""
 
+    expected = 'a log, or its mapping (`trawl import-log LOG --draft` writes one)'
+
 
 class SentenceError(TrawlError):
     """Table of sentences, or its link, that is missing, unreadable or impossible."""
+
+    expected = 'a table of sentences (`trawl files --out FOLDER` copies those of the package)'
 
 
 class RosMissing(TrawlError):

@@ -12,6 +12,7 @@ from typing import BinaryIO
 
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.limits import JSON_BYTES, YAML_NUMBER, Limit
+from trawl_ros.core.resources import names_in, nearest
 
 
 @contextmanager
@@ -62,7 +63,8 @@ def open_file(path: Path, error: type[TrawlError]) -> BinaryIO:
     try:
         number = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except FileNotFoundError:
-        raise error(f'{path}: no such file') from None
+        near = nearest(path.name, names_in(path.parent))
+        raise error(f'{path}: no such file, expected {error.expected}{near}') from None
     except OSError as reason:
         raise error(f'{path}: cannot be read ({reason.strerror})') from reason
     if not stat.S_ISREG(os.fstat(number).st_mode):
@@ -77,6 +79,8 @@ def read_whole(path: Path, limit: Limit, error: type[TrawlError], expected: str)
         data = stream.read(limit.value + 1)
     if len(data) > limit.value:
         raise error(f'{path}: larger than {limit}, expected {expected}')
+    if not data:
+        raise error(f'{path}: the file is empty, expected {error.expected}')
     return data
 
 

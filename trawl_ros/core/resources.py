@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Look-up of files, by path or by name in the package."""
 
-import difflib
+from collections.abc import Iterable
+from difflib import get_close_matches
 from pathlib import Path
 
 from trawl_ros.core.errors import TrawlError
@@ -89,6 +90,20 @@ def bag_name(path: str | Path) -> str:
     return name if packaged_bag(name) == Path(path) else str(path)
 
 
+def names_in(folder: Path) -> list[str]:
+    """List the names in a folder, without hidden ones; none if it cannot be read."""
+    try:
+        return sorted(entry.name for entry in folder.iterdir() if not entry.name.startswith('.'))
+    except OSError:
+        return []
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """Ask whether the nearest name was meant; an empty text if none is near."""
+    near = get_close_matches(name, names, n=1, cutoff=0.8)
+    return f'; did you mean {near[0]}?' if near else ''
+
+
 def _sample(name: str) -> Path | None:
     """Return a file or folder of the package's ``bags``, None if there is none of this name."""
     try:
@@ -128,7 +143,6 @@ def _siblings(path: Path) -> str:
     """Suggest names that the user may have meant instead of `path`."""
     if not path.parent.is_dir():
         return ''
-    names = sorted(entry.name for entry in path.parent.iterdir() if not entry.name.startswith('.'))
-    if near := difflib.get_close_matches(path.name, names, n=1, cutoff=0.8):
-        return f'; did you mean {Path(near[0]).stem}?'
-    return f'; there are: {", ".join(names)}' if names else '; the folder is empty'
+    names = [Path(name).stem for name in names_in(path.parent)]
+    known = f'; there are: {", ".join(names)}' if names else '; the folder is empty'
+    return nearest(path.stem, names) or known

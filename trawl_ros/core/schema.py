@@ -88,7 +88,7 @@ def load_yaml(path: str | Path, error: type[TrawlError]) -> dict[str, object]:
         except yaml.YAMLError as reason:
             raise error(f'{path}: {_yaml_complaint(reason)}') from reason
     if data is None:
-        raise error(f'{path}: the file is empty, expected keys and values')
+        raise error(f'{path}: found no keys and values, expected {error.expected}')
     if not isinstance(data, dict):
         raise error(f'{path}: found {shown(data)}, expected keys and values at the top level')
     return data

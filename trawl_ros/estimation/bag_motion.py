@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Learning from all of the tow in bags, from what their steady windows tell on."""
+"""Fit of the whole tows in bags, from the estimate of their steady windows."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -41,7 +41,7 @@ Refused = Callable[[str], None]
 
 
 def why_windows_alone(gear: GearRecord, *, prior: bool) -> str | None:
-    """Reason, in a sentence, for which all of a tow cannot be used; None where it can."""
+    """Reason, in a sentence, why the whole tow cannot be fitted; None if it can."""
     if gear.pair is not None:
         return f'{gear.name} has no boards, and only their coefficients are learned in motion'
     if not prior:
@@ -66,7 +66,7 @@ def learn_from_motion(
     *,
     net: bool = False,
 ) -> MotionOutcome:
-    """Fit all of the tows, from the estimate of their steady windows on, or from the prior.
+    """Fit the whole tows, from the estimate of their steady windows, or from the prior.
 
     Parameters
     ----------

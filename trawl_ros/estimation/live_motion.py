@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Learning from all of a tow while it goes on; at its end as from a bag, by the same functions.
+"""Fit of a whole tow while it goes on; at its end as from a bag, by the same functions.
 
 What is done depends on the stamps of the samples alone: an estimate is the same at any rate of a
 replay.
@@ -43,7 +43,7 @@ windows is begun with no sooner."""
 
 @dataclass(frozen=True)
 class MotionUpdate:
-    """Estimate from all of a tow so far.
+    """Estimate from the whole tow so far.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class MotionUpdate:
     moved
         Largest distance of a coefficient from there, in std.
     towings
-        Times that all of the tow was towed along.
+        Number of times that the model was towed along the tow.
     """
 
     stamp: int
@@ -69,7 +69,7 @@ class MotionUpdate:
 
 
 class LiveMotion:
-    """Learning from all of a tow while it goes on.
+    """Fit of a whole tow while it goes on.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ class LiveMotion:
     def finish(
         self, identification: Identification | None, on_progress: OnProgress = ignore
     ) -> MotionOutcome:
-        """Fit all of the tow as if it were read from a bag.
+        """Fit the whole tow as if it were read from a bag.
 
         Parameters
         ----------

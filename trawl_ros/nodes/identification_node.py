@@ -232,7 +232,7 @@ class IdentificationNode(TrawlNode):
         """Bring the estimate to convergence, write the report, and end the thread."""
         if self._adviser is not None:
             self._adviser.stop()
-        # All of the tow takes minutes, which who ends a node may not give it.
+        # A fit of the whole tow takes minutes; whoever ends a node may not wait for it.
         wish = self._worker.finish(whole=False)
         self._worker.stop()
         self._tell(wish.outcome)

@@ -81,8 +81,9 @@ class BagMessages:
                     spans.setdefault(topic.topic, []).append((topic.start, topic.end, path))
         if not self.counts:
             raise BagError(
-                f'{paths[0]}: holds none of the topics that can be shown; expected '
-                f'{namespace}/winch/joint_states, {namespace}/truth/winch or others of the project'
+                f'{paths[0]}: holds none of the topics that can be shown, expected '
+                f'/{namespace.strip("/")}/winch/joint_states or others of the project; '
+                '`trawl bag info` lists the topics of a bag, --namespace chooses others'
             )
         _refuse_two_tows(spans)
         every = [part for parts in spans.values() for part in parts]

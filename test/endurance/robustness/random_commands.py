@@ -16,6 +16,7 @@ from trawl_ros.solver.stepper import StepFailed
 START = Command(500.0, 500.0, 2.1)
 
 
+LIMITS = CommandLimits()
 RECOVERY = Command(500.0, 500.0, 2.4)
 """Command of the last part of an hour: straight on, and faster."""
 
@@ -44,7 +45,7 @@ def commanded_hour(
     *,
     duration: float = 3600.0,
     recovery: float = 900.0,
-    limits: CommandLimits = CommandLimits(),
+    limits: CommandLimits = LIMITS,
 ) -> CommandedHour:
     """Tow under random commands, and at last for ``recovery`` seconds straight on and faster."""
     draws = np.random.default_rng(seed)

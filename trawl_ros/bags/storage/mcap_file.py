@@ -184,11 +184,13 @@ class McapFile:
         stream.seek(0)
         magic = stream.read(len(MCAP0_MAGIC))
         if not magic:
-            raise BagError(f'{self.path}: the file is empty; expected an MCAP file')
+            raise BagError(
+                f'{self.path}: the file is empty, expected an MCAP file; copy or record it again'
+            )
         if magic != MCAP0_MAGIC:
             raise BagError(
-                f'{self.path}: starts with {magic!r}; expected an MCAP file, or for another '
-                'kind of log a mapping: trawl import-log LOG --draft writes one'
+                f'{self.path}: starts with {magic!r}, expected an MCAP file; '
+                '`trawl import-log` makes a bag of a log of another kind'
             )
         with suppress(*DAMAGE):
             header = next(parse_records(stream.read(_HEADER_BYTES)))

@@ -8,6 +8,8 @@ from typing import Any
 
 import click
 
+from trawl_ros.core.resources import nearest
+
 UNITS_KEY = 'trawl_ros.units'
 """Key of the chosen units among what click keeps of a command."""
 
@@ -40,6 +42,16 @@ class LoadedGroup(click.Group):
         command = import_module(f'trawl_ros.{module}').command
         assert isinstance(command, click.Command)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command; an unknown one is refused with the nearest name, or with all."""
+        name = args[0]
+        if name not in self.modules and name[:1].isalnum() and not ctx.resilient_parsing:
+            known = nearest(name, self.modules) or f'; there are: {", ".join(self.modules)}'
+            ctx.fail(f'{name}: no such command{known}')
+        return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without loading them."""

@@ -115,7 +115,7 @@ class Estimator:
     def add(self, window: SteadyWindow, near: 'Equilibrium | None' = None) -> Estimate | None:
         """Add one window; None when the model has no steady state there.
 
-        ``near`` is a steady state to start from, beside those of other windows.
+        ``near`` is a steady state to start from, in addition to those of other windows.
         """
         try:
             linear = self._linearise(window, self.coefficients, self._inputs_of(window), start=near)

@@ -225,7 +225,7 @@ class Fit:
     def rescaled(self) -> 'Fit':
         """Copy of the fit with each group's noise scale estimated from its residuals.
 
-        Clipped squares beside what they would be on normal noise (Huber's proposal 2), per
+        Clipped squares over those expected of normal noise (Huber's proposal 2), per
         degree of freedom (restricted maximum likelihood). What all groups have in common is
         pooled with imagined readings that speak for the stated noise, each group with imagined
         readings that speak for what they have in common.

@@ -54,7 +54,7 @@ def innovation_of(linear: Linearised, fit: Fit, known: FloatArray) -> Innovation
 def posterior_estimate(
     fit: Fit, revision: int, innovation: Innovation | None, converged: bool, reason: str
 ) -> Estimate:
-    """Posterior estimate of a fit; the arguments beside it go into the estimate as they are.
+    """Posterior estimate of a fit; the other arguments go into the estimate unchanged.
 
     A model that the data contradict knows less than it says: standard deviations are as many times
     larger as the misfit is (Birge 1932).

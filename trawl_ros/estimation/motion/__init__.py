@@ -1,3 +1,3 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Estimation from all of a tow: stretches in motion, towed with derivatives."""
+"""Estimation from a whole tow: stretches in motion, towed with derivatives."""

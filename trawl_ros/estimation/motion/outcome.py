@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Outcome of learning from all of a tow, beside what its steady windows tell."""
+"""Outcome of fitting a whole tow, compared with the estimate of its steady windows."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class PoorStretch:
 
 @dataclass(frozen=True)
 class MotionOutcome:
-    """Outcome of a fit of all of the tows.
+    """Outcome of a fit of whole tows.
 
     Attributes
     ----------
@@ -58,12 +58,12 @@ class MotionOutcome:
 
     @property
     def std(self) -> FloatArray:
-        """Posterior std (12,) by all of the tow."""
+        """Posterior std (12,) of the whole tow."""
         return np.sqrt(np.diag(self.fit.covariance))
 
     @property
     def covariance(self) -> FloatArray:
-        """Posterior covariance (12, 12) by all of the tow."""
+        """Posterior covariance (12, 12) of the whole tow."""
         return self.fit.covariance
 
     @property
@@ -78,7 +78,7 @@ class MotionOutcome:
 
     @property
     def ratio(self) -> FloatArray:
-        """Std by all of the tow over that by its windows, or of the prior without any (12,)."""
+        """Ratio (12,) of the std of the whole tow to that of its windows or of the prior."""
         before = self.prior.std if self.windows is None else self.windows.std
         return np.asarray(self.std / before, np.float64)
 

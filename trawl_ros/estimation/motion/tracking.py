@@ -63,7 +63,7 @@ class TrackedFit:
     moved
         Largest distance of a coefficient from there, in std.
     towings
-        Times that all of the tows was towed along.
+        Number of times that the model was towed along the tows.
     """
 
     fit: MotionFit

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Trial planning: the most informative trial in a given time, beside the paper's sweep."""
+"""Trial planning: the most informative trial in a given time, compared with the paper's sweep."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -89,8 +89,8 @@ def _motion(report: Report) -> list[Drawing]:
     return [
         Drawing(
             'motion',
-            'Each coefficient by its steady windows and by all of the tow, in standard deviations '
-            'of the prior; below, what either leaves of these.',
+            'Each coefficient from steady windows and from the whole tow, in standard deviations '
+            'of the prior; below, their own standard deviations.',
             motion_figure(report.motion, report.truth), IN_MOTION,
         )
     ]  # fmt: skip

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Figure of what all of the tow adds to its steady windows."""
+"""Figure of what a fit of the whole tow adds to its steady windows."""
 
 import numpy as np
 from matplotlib.figure import Figure

@@ -61,9 +61,9 @@ def motion_table(report: Report) -> Table:
     motion = report.motion
     assert motion is not None
     minutes = motion.duration_s / 60.0
-    table = Table(title=f'Steady windows alone, and all of the tow ({minutes:.0f} min)')
+    table = Table(title=f'Steady windows alone, and the whole tow ({minutes:.0f} min)')
     table.add_column('', style='bold')
-    headings = ['prior', 'windows', 'all of the tow', 'ratio']
+    headings = ['prior', 'windows', 'whole tow', 'ratio']
     if report.truth is not None:
         headings += ['truth', 'in interval']
     for heading in headings:

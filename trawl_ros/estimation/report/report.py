@@ -106,11 +106,11 @@ class Report:
     paired
         True for a gear without boards, whose coefficients do nothing.
     motion
-        Outcome of learning from all of the tows, where that was asked for and can be told.
+        Outcome of fitting the whole tows, if that was asked for and possible.
     motion_refused
         Reason for which it cannot, in a sentence without its full stop; '' without one.
     sensors
-        Each sensor beside its predictions by the gear file, the start and the estimate.
+        Each sensor, with its predictions by the gear file, the start and the estimate.
 
     Examples
     --------

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Measured beside predicted, sensor by sensor, in the units of the field."""
+"""Measured and predicted values, sensor by sensor, in the units of the field."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -19,7 +19,7 @@ def coefficient_table(report: Report) -> Table:
     """Start, value, 95 % interval, truth where known, and whether the data determine it."""
     tows = len(set(report.tow_of.tolist()))
     of = '' if tows == 1 else f' of {tows} tows'
-    source = f'{report.estimate.windows} steady windows{of}' if tows else 'all of the tow'
+    source = f'{report.estimate.windows} steady windows{of}' if tows else 'the whole tow'
     table = Table(title=f'Board coefficients from {source}')
     table.add_column('', style='bold')
     headings = ['start', 'value', 'low', 'high']

@@ -66,8 +66,8 @@ def _fit(report: Report, held: FloatArray, paper: FloatArray) -> str:
     out = report.held_out
     if not report.windows and report.motion is not None:
         return (
-            'No steady window was found: all of the tow was learned from instead, '
-            f"{report.motion.duration_s / 60.0:.0f} min of it, from the gear file's prior on."
+            'No steady window was found: the whole tow was fitted instead, '
+            f"{report.motion.duration_s / 60.0:.0f} min of it, from the gear file's prior."
         )
     if not np.all(np.isfinite(held)):
         return (

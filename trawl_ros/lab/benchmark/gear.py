@@ -117,7 +117,7 @@ def _words(run: Run, haul: HaulManoeuvre) -> str:
 
 
 def _beside_moordyn(factor: float, model: GearModel, *, quick: bool) -> MeasuredValue:
-    what = "the same beside MoorDyn's factor on a web of as many lines and points"
+    what = "the same compared with MoorDyn's factor on a web of as many lines and points"
     try:
         theirs = moordyn_web_factor(quick)
     except (PeerAbsent, PeerFailed) as error:

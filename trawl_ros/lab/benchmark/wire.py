@@ -180,7 +180,7 @@ def _own_row(ours: Fastest | None) -> MeasuredValue:
 
 
 def _ratio(ours: Fastest | None, theirs: Sequence[Fastest]) -> MeasuredValue:
-    what = "the same beside MoorDyn's best stable scheme"
+    what = "the same compared with MoorDyn's best stable scheme"
     if ours is None or not theirs:
         return MeasuredValue(
             what, math.nan, '×', at_least(OVER_MOORDYN), 'one of the two has no step that is good'

@@ -57,14 +57,14 @@ def command() -> None:
 @click.option('--class', 'kind', help='Python class as module:Class, with update(sample).')
 @click.option(
     '--scenario', 'names', multiple=True, type=click.Choice(SCENARIOS),
-    help='Scenario of the bench, several times for several; all by default.',
+    help='Scenario of the bench. May be given several times; all by default.',
 )  # fmt: skip
 def autotrawl(
     out: Path, force: bool, node: str | None, kind: str | None, names: Sequence[str]
 ) -> None:
-    """Tow five scenarios with your autotrawl and with those of the project.
+    """Tow five scenarios with autotrawls, yours and the project's.
 
-    It is a node that answers winch/joint_states with command/winch, or a class. The report has
+    Yours is a node that answers winch/joint_states with command/winch, or a class. The report has
     the scores of all, and figures. Without either, the controllers of the project are compared.
     """
     empty_folder(out, force=force)

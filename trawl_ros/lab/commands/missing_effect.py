@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from trawl_ros.cli.console.tables import output_console, plain_table
-from trawl_ros.cli.options import FILE, FOLDER, FORCE_OPTION
+from trawl_ros.cli.options import FILE, FOLDER, FORCE_OPTION, GEAR_OPTION
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import empty_folder
 from trawl_ros.lab.commands.outcome import stoppable
@@ -35,15 +35,15 @@ def command() -> None:
 @click.argument('out', type=FOLDER)
 @click.option('--seed', required=True, type=click.IntRange(0), help='Seed of all draws.')
 @click.option('--trials', required=True, type=click.IntRange(1, 10_000), help='Number of trials.')
-@click.option('--gear', default='kaifuha', help='Gear file, or the name of one of the package.')
+@GEAR_OPTION
 @click.option(
-    '--form', type=click.Choice(FORMS), default='windows',
+    '--form', type=click.Choice(FORMS), default='windows', show_default=True,
     help='Steady windows of linearised states; bags of such states; bags of tows in time.',
 )  # fmt: skip
 def make(out: Path, seed: int, trials: int, gear: str, form: Form) -> None:
-    """Make blind trials in the folder OUT, and their key in a file next to it.
+    """Make blind trials in the folder OUT.
 
-    A call with more trials goes on where an earlier one ended.
+    Their key is a file next to OUT. A call with more trials goes on where an earlier one ended.
     """
     with stoppable(f'the trials made so far are in {out}') as (display, _):
         key = make_trials(out, seed=seed, trials=trials, gear=gear, form=form, on_progress=display)
@@ -58,12 +58,13 @@ def make(out: Path, seed: int, trials: int, gear: str, form: Form) -> None:
 @click.option('--out', required=True, type=FOLDER, help='Folder of the answers.')
 @click.option(
     '--method', 'methods', multiple=True, type=click.Choice(METHODS),
-    help='Method, several times for several; all by default.',
+    help='Method. May be given several times; all by default.',
 )  # fmt: skip
 def answer(folder: Path, out: Path, methods: Sequence[str]) -> None:
-    """Answer the trials in FOLDER with the diagnosis of the project and with baselines.
+    """Answer the trials in FOLDER.
 
-    A call goes on where an earlier one ended.
+    Methods are the diagnosis of the project and baselines. A call goes on where an earlier one
+    ended.
     """
     chosen = tuple(dict.fromkeys(methods)) or METHODS
     with stoppable(f'the answers so far are in {out}') as (display, _):
@@ -81,7 +82,10 @@ def answer(folder: Path, out: Path, methods: Sequence[str]) -> None:
 def score(
     folder: Path, answers: Sequence[Path], key: Path | None, out: Path | None, force: bool
 ) -> None:
-    """Score files of ANSWERS to the trials in FOLDER, and print a column for each."""
+    """Score ANSWERS, files of answers to the trials in FOLDER.
+
+    The command prints a column for each file.
+    """
     if out is not None:
         empty_folder(out, force=force)
     trials, truth = read_trials(folder), read_key(folder, key)

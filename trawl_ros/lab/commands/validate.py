@@ -24,7 +24,11 @@ from trawl_ros.lab.validation.run import validate
 @FORCE_OPTION
 @click.option('--quick', is_flag=True, help='Small version of every case, which takes seconds.')
 @click.option(
-    '--workers', default=2, show_default=True, type=click.IntRange(1, 64), help='Processes.'
+    '--workers',
+    default=2,
+    show_default=True,
+    type=click.IntRange(1, 64),
+    help='Number of processes that run cases.',
 )
 def command(
     cases: tuple[str, ...],

@@ -101,15 +101,15 @@ class TopicCounts:
     'tows with an effect that the model lacks.',
 )  # fmt: skip
 def command(out: Path, scenario: Path | None, full: bool, diagnosis: bool) -> None:
-    """Tow a synthetic trial through the ROS graph, record it, replay it, and refit the boards.
+    """Tow a synthetic trial through a ROS graph, record it, replay it, and estimate the doors.
 
     Every node is a separate process, and they communicate by DDS on this machine only. The folder
-    receives the bag, identification.json, figures and summary.json. At the end steady states of
-    the default gear are diagnosed that have an effect the model lacks. They are made without towing
-    in time. The effect is found, named and put into the gear file, in the folder 'hidden'.
+    receives the bag, identification.json, figures and summary.json. At the end the command
+    diagnoses steady states with an effect that the model lacks, and writes a gear file with this
+    effect into the folder 'hidden'.
 
-    With --full an hour is towed, and the boards are estimated from all of it, hauling included. The
-    tows that are diagnosed are towed too, in a current, and so is the repaired gear.
+    With --full it tows an hour, and estimates the doors from all of it, hauling included. It also
+    tows what it diagnoses, in a current, and the repaired gear.
     """
     path = packaged(scenario or ('demo' if full else 'demo_short'), 'scenarios').absolute()
     loaded = load_scenario(path)

@@ -115,7 +115,7 @@ class IdentificationWorker(Worker[Work]):
     def finish(self, *, whole: bool = True) -> Finish:
         """Request to converge the estimate and to write the report, once no sample waits.
 
-        All of the tow is fitted where ``whole``, which takes minutes for each hour of it.
+        If ``whole``, the whole tow is fitted, which takes minutes for each hour of it.
         """
         wish = Finish(whole=whole)
         self.put(wish)

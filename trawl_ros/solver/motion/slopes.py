@@ -2,10 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Derivatives of a motion by parameters, from one time step to the next.
 
-A step solves F(q, v) = M a for the new acceleration, with q and v linear in it. The derivative of
-its root by a parameter solves the same equation, linearised there: one factorisation serves, with
-one right-hand side for each parameter. Rotations advance by exponentials, whose tangent (the left
-Jacobian of SO(3)) enters the matrix and the history.
+A step solves F(q, v, u, p) = M(q*, u, p) a for the new acceleration a, with q = w + c_q a and
+v = s + c_v a. Here w and s follow from the motion before the step, q* is the predicted position, u
+the towing boundary and p a parameter. The derivative of the root by p solves the same equation,
+linearised, with K = -∂F/∂q and C = -∂F/∂v:
+
+(K T c_q + C c_v + M) ∂a
+    = ∂F/∂p + ∂F/∂u ∂u - K ∂w - C ∂s - ∂(M a)/∂p - ∂(M a)/∂(q*, u) (∂q*, ∂u)
+
+One factorisation serves, with one right-hand side for each parameter. A board's rotation is exp(w)
+times the one before, so its rows of ∂w are J ∂w + exp(w) ∂θ. T is the left Jacobian of SO(3),
+J = I + (1 - cos |w|) / |w|² S + (|w| - sin |w|) / |w|³ S² with S b = w × b, in the columns of
+rotations, and the identity elsewhere.
 """
 
 from dataclasses import dataclass, replace

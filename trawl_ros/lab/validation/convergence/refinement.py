@@ -351,4 +351,4 @@ def _table(seen: dict[str, dict[int, FloatArray]]) -> TextTable:
     )
 
 
-CASE = ValidationCase('refinement', 'The default gear beside finer ones', run)
+CASE = ValidationCase('refinement', 'The default gear compared with finer ones', run)

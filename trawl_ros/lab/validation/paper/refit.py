@@ -93,7 +93,7 @@ def refit_paper_trial(record: GearRecord, windows: Sequence[SteadyWindow]) -> Pa
     """Fit a gear to steady windows, all together from the first iteration on.
 
     `trawl identify` takes windows one by one, as they come; an objective that gains terms on the
-    way could not be set beside Fig. 4.
+    way could not be compared with Fig. 4.
 
     Raises
     ------
