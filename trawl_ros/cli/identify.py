@@ -69,7 +69,7 @@ def command(
     scheduler: str | None,
     force: bool,
 ) -> None:
-    """Refit the twelve board coefficients from BAGS, one bag per tow.
+    """Refit the board coefficients from BAGS, one bag per tow.
 
     The command writes report.html, identification.json and figures. For cross-validation each tow
     is left out in turn and predicted from the others; with a single tow, its steady states are left

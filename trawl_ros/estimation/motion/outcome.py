@@ -58,27 +58,27 @@ class MotionOutcome:
 
     @property
     def std(self) -> FloatArray:
-        """Posterior std (12,) by all of the tow."""
+        """Posterior std (q,) by all of the tow."""
         return np.sqrt(np.diag(self.fit.covariance))
 
     @property
     def covariance(self) -> FloatArray:
-        """Posterior covariance (12, 12) by all of the tow."""
+        """Posterior covariance (q, q) by all of the tow."""
         return self.fit.covariance
 
     @property
     def low(self) -> FloatArray:
-        """Lower ends (12,) of the 95 % intervals, cut at the bounds."""
+        """Lower ends (q,) of the 95 % intervals, cut at the bounds."""
         return np.maximum(self.fit.values - HALF_95 * self.std, self.prior.low)
 
     @property
     def high(self) -> FloatArray:
-        """Upper ends (12,)."""
+        """Upper ends (q,)."""
         return np.minimum(self.fit.values + HALF_95 * self.std, self.prior.high)
 
     @property
     def ratio(self) -> FloatArray:
-        """Std by all of the tow over that by its windows, or of the prior without any (12,)."""
+        """Std by all of the tow over that by its windows, or of the prior without any (q,)."""
         before = self.prior.std if self.windows is None else self.windows.std
         return np.asarray(self.std / before, np.float64)
 
