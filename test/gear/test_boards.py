@@ -9,7 +9,8 @@ import yaml
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.resources import share_path
-from trawl_ros.gear.boards import CORRECTIONS, plate_added_mass
+from trawl_ros.gear.board_parameters import CORRECTIONS
+from trawl_ros.gear.boards import plate_added_mass
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.polars import UPRIGHT, load_door, polar_of
 from trawl_ros.gear.records import GearRecord
@@ -98,8 +99,8 @@ def test_a_foil_rises_to_its_stall_and_falls_behind_it(tmp_path: Path) -> None:
     assert np.all(np.diff(polar.lift[: top + 1]) > 0)
     assert np.all(np.diff(polar.lift[top:]) < 0)
     assert np.all(np.diff(polar.drag) > 0)
-    assert build_board(gear).law_range == (0.0, pytest.approx(np.radians(45.0)))
-    assert build_board(load_gear('kaifuha')).law_range == LAW_RANGE
+    assert build_board(gear).law.range == (0.0, pytest.approx(np.radians(45.0)))
+    assert build_board(load_gear('kaifuha')).law.range == LAW_RANGE
 
 
 def test_the_centre_of_pressure_turns_the_board_as_its_force_does(

@@ -15,6 +15,7 @@ import pytest
 from pydantic.fields import FieldInfo
 
 from trawl_ros.core.schema import Record
+from trawl_ros.gear.board_parameters import PARAMETERS_OF_KIND
 from trawl_ros.gear.records import GearRecord
 
 DOCUMENT = Path(__file__).parents[2] / 'docs' / 'gear_format.md'
@@ -28,8 +29,7 @@ PREFIXES = {
 """Key of a record whose keys are in one table with those of another record."""
 
 DESCRIBED_IN_TEXT = {
-    'BoardLawRecord', 'PolarPointRecord', 'TiltPointRecord', 'CoefficientsRecord',
-    'ProvenanceRecord', 'SourceRecord',
+    'BoardLawRecord', 'PolarPointRecord', 'TiltPointRecord', 'ProvenanceRecord', 'SourceRecord',
 }  # fmt: skip
 """Records without a table. Laws have text and tables of their own; programs write provenances."""
 
@@ -154,6 +154,12 @@ def test_no_key_is_missing(record):
         assert [key for key in keys if f'`{key}' not in text] == []
     else:
         assert [key for key in own_keys(kind) if not meanings(kind).get(key)] == []
+
+
+@pytest.mark.parametrize('kind', PARAMETERS_OF_KIND)
+def test_no_parameter_of_a_board_law_is_missing(kind):
+    text = DOCUMENT.read_text('utf-8')
+    assert [name for name in PARAMETERS_OF_KIND[kind].names if f'`{name}`' not in text] == []
 
 
 if __name__ == '__main__':

@@ -8,12 +8,12 @@ import pytest
 
 from trawl_ros.model.board import (
     Board,
-    coefficients_at,
     flow_at,
     hydrodynamics,
     own_load,
 )
 from trawl_ros.model.board_law import LAW_RANGE
+from trawl_ros.model.board_laws import EQ14
 from trawl_ros.model.gear_model import OUTWARD, GearModel, build_board
 from trawl_ros.model.numerics import STEP
 from trawl_ros.model.rotations import about_axis, rotation
@@ -122,9 +122,9 @@ def test_water_never_drives_a_board_whatever_way_it_comes(board: Board) -> None:
 
 
 def test_lift_and_moments_fade_outside_the_law_and_drag_does_not(board: Board) -> None:
-    inside = coefficients_at(PRINTED, np.radians(20.0), 0.0)
+    inside = EQ14(PRINTED, np.radians(20.0), 0.0)
     for attack in (-60.0, -120.0, 100.0, 170.0):
-        beyond = coefficients_at(PRINTED, np.radians(attack), 0.0)
+        beyond = EQ14(PRINTED, np.radians(attack), 0.0)
         np.testing.assert_array_equal(beyond[[1, 3, 5]], 0.0)
         assert beyond[0] > inside[0]
 

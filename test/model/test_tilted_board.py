@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.gear.boards import BoardLawRecord
 from trawl_ros.gear.polars import UPRIGHT
 from trawl_ros.model.board import Board, own_load
-from trawl_ros.model.board_table import TableLaw
+from trawl_ros.model.board_laws import TableLaw
 from trawl_ros.model.gear_model import OUTWARD, build_board
 from trawl_ros.model.numerics import STEP
 from trawl_ros.model.rotations import about_axis

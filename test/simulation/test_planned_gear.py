@@ -6,12 +6,14 @@ import pytest
 from trawl_ros.gear.load import load_gear
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.state import mirrored
+from trawl_ros.records.channels import INPUTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.simulation.command import Command
 from trawl_ros.simulation.simulation import Simulation
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
 from trawl_ros.solver.predict import Predictor
-from trawl_ros.solver.sensitivity import PARAMETERS, sensitivities
+from trawl_ros.solver.sensitivity import sensitivities
 
 
 @pytest.fixture(scope='module')
@@ -84,12 +86,12 @@ def test_sensitivities_hold_for_a_board_that_follows_a_table(
     planned: GearModel, steady: SteadyState, name: str
 ) -> None:
     """Slopes of spread and depth by a correction to the table, against states solved anew."""
-    column = sensitivities(planned, steady.equilibrium)[:, PARAMETERS.index(name)]
+    column = sensitivities(planned, steady.equilibrium)[:, (*COEFFICIENTS, *INPUTS).index(name)]
     h, seen = 1e-3, []
     for change in (h, -h):
         values = np.zeros(12)
         if name != 'speed':
-            values[PARAMETERS.index(name)] = change
+            values[(*COEFFICIENTS, *INPUTS).index(name)] = change
         speed = 1.2 + (change if name == 'speed' else 0.0)
         model = planned.with_coefficients(values)
         found = steady_state(model, 500.0, speed, start=steady.equilibrium).observables

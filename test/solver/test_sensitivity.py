@@ -7,13 +7,17 @@ import pytest
 
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
+from trawl_ros.records.channels import INPUTS
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import SteadyState
 from trawl_ros.solver.first_guess import at_velocity
 from trawl_ros.solver.operating_point import steady_tow
 from trawl_ros.solver.predict import Predictor
 from trawl_ros.solver.relax import relax
-from trawl_ros.solver.sensitivity import PARAMETERS, sensitivities
+from trawl_ros.solver.sensitivity import sensitivities
+
+PARAMETERS = (*COEFFICIENTS, *INPUTS)
 
 STEPS = dict.fromkeys(PARAMETERS, 2e-4) | {
     'port_length': 2e-2,

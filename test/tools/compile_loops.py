@@ -31,7 +31,12 @@ def compile_loops() -> None:
     simulation = Simulation(model, Command(500.0, 500.0, 2.1))
     simulation.advance()
     simulation.truth()
-    parameters = MotionParameters(net=True, effects=(catalogue()['board_added_mass'],), motions=1)
+    parameters = MotionParameters(
+        coefficients=model.board.law.parameters.names,
+        net=True,
+        effects=(catalogue()['board_added_mass'],),
+        motions=1,
+    )
     point = InputPoint(inputs=np.array([500.0, 500.0, 2.1]), rates=np.zeros(3), hours=0.0)
     tow = DifferentiatedTow(model, parameters, lambda time: point)
     for _ in range(2):

@@ -104,7 +104,12 @@ def test_a_repeated_status_is_shown_once(reader, known):
 
 @pytest.mark.parametrize('value', ['', 'nan', 'much', '1e999'])
 def test_an_estimate_without_a_number_is_refused(reader, value):
-    status = Status('identification: coefficients', OK, '', {'a1': value, 'windows': '1'})
+    status = Status(
+        'identification: coefficients',
+        OK,
+        '',
+        {'a1': value, 'a1 determined': 'true', 'windows': '1'},
+    )
     with pytest.raises(MessageError, match=f"^identification: coefficients: a1 is '{value}'"):
         taken(reader, ('identification/status', diagnostic_array(0, [status])))
 

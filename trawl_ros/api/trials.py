@@ -57,7 +57,7 @@ def identify(
     on_note: OnNote = _silent,
     on_progress: OnProgress = ignore,
 ) -> 'Report':
-    """Refit the twelve board coefficients of eq. 14 from bags, one bag per tow.
+    """Refit the board coefficients from bags, one bag per tow.
 
     For cross-validation each tow is left out in turn and predicted from the others; with a single
     tow, its steady states are left out.
@@ -142,7 +142,7 @@ def identify(
         except TrawlError as error:
             raise TrawlError(f'{"; ".join(reasons)}; and no fit in motion: {error}') from error
         rejections = [recording.rejections for recording in unsettled]
-        result = report_in_motion(learned, rejections, known)
+        result = report_in_motion(learned, rejections, record, known)
         if out is not None:
             write_report(result, Path(out))
         return result
@@ -304,7 +304,8 @@ def _onsets(
     known = of_gear_file(diagnosis.gear)
     if diagnosis.base is not None:
         windows = (*diagnosis.split.fitted, *diagnosis.split.kept_back)
-        known = by_estimate(diagnosis.base.estimate, windows)
+        board = diagnosis.base.fit.prior.slice_of('coefficients')
+        known = by_estimate(diagnosis.base.estimate, board, windows)
     found = []
     for number, path in enumerate(paths):
         on_progress(WorkProgress('looking for onsets', number, len(paths), 'tows'))

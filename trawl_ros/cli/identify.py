@@ -73,7 +73,7 @@ def command(
     scheduler: str | None,
     force: bool,
 ) -> None:
-    """Estimate the twelve hydrodynamic coefficients of the doors from BAGS, one bag per tow.
+    """Estimate the hydrodynamic coefficients of the doors from BAGS, one bag per tow.
 
     The command writes report.html, identification.json and figures. For cross-validation each tow
     is left out in turn and predicted from the others; with a single tow, its steady states are left

@@ -24,7 +24,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(
         'demo': ('lab.demo.command', 'Tow, record, replay and estimate through a ROS graph.'),
         'tow': ('cli.tow', 'Tow a scenario and record its instruments as a bag.'),
         'compare': ('cli.compare', 'Compare logs with a gear file as it is; nothing is fitted.'),
-        'identify': ('cli.identify', 'Estimate the twelve door coefficients from recorded bags.'),
+        'identify': ('cli.identify', 'Estimate the door coefficients from recorded bags.'),
         'plan-trial': ('cli.plan_trial', 'Plan the sea trial that determines the boards best.'),
         'diagnose': (
             'cli.diagnose',

@@ -42,7 +42,6 @@ from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.predict import Predictor
 
 MIN_STATES = 3
@@ -199,7 +198,7 @@ def _moved(predictor: Predictor, base: Refit) -> BoardsMoved:
             elif name.endswith('door_depth'):
                 changed['depth'].append(float(own))
     spread, depth = (float(np.mean(own)) if own else 0.0 for own in changed.values())
-    return BoardsMoved(float(in_std[largest]), COEFFICIENTS[largest], spread, depth)
+    return BoardsMoved(float(in_std[largest]), base.fit.prior.names[board][largest], spread, depth)
 
 
 def _on_holdout(

@@ -14,7 +14,7 @@ from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
 from trawl_ros.diagnosis.inference.posterior import Explanation
 from trawl_ros.diagnosis.library.drift import Drift
 from trawl_ros.diagnosis.library.gear_file_change import GearFileChange, changed
-from trawl_ros.gear.boards import CoefficientsRecord
+from trawl_ros.gear.board_parameters import CoefficientsRecord
 from trawl_ros.gear.records import EffectRecord, GearRecord, ProvenanceRecord, SourceRecord
 
 RECORDING_SUFFIXES = ('.mcap', '.db3', '.csv')

@@ -8,7 +8,7 @@ import numpy as np
 
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
-from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.fit.parameters import ParameterGroup, ParameterVector
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.windows.finder import SteadyWindowFinder
 from trawl_ros.estimation.windows.records import WindowOptions
@@ -32,13 +32,14 @@ def estimator_options(*, prior: bool = True, net: bool = False) -> EstimatorOpti
 
 
 def board_prior(gear: GearRecord) -> ParameterVector:
-    """Prior of the board's coefficients in a gear file."""
-    known = gear.identification
+    """Prior of the parameters of the board's law in a gear file."""
+    known, own = gear.identification, gear.board.parameters
     return ParameterVector(
         start=np.array(known.start),
         std=np.array(known.std),
         low=np.array(known.low),
         high=np.array(known.high),
+        groups=(ParameterGroup('coefficients', own.names, own.units),),
     )
 
 

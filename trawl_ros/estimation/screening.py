@@ -85,7 +85,7 @@ class Screening:
         return self._start
 
     def judge(self, window: SteadyWindow, coefficients: FloatArray) -> ScreeningResult:
-        """Judge a window around the present coefficients (12,); once for each steady state.
+        """Judge a window around the present coefficients (q,); once for each steady state.
 
         A unit that was found wrong stays so through the tow, unless a window says otherwise.
         """

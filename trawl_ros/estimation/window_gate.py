@@ -48,7 +48,7 @@ class WindowGate:
         self._screening.reset()
 
     def judge(self, window: SteadyWindow, coefficients: FloatArray) -> GatedWindow:
-        """Judge a window, by the model at the present coefficients (12,)."""
+        """Judge a window, by the model at the present coefficients (q,)."""
         over_ground = self._over_ground.judge(window.tow, window.track)
         if over_ground is not None:
             return self._refuse(window, 'speed over ground', over_ground, withdraw=True)

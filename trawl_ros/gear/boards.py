@@ -1,68 +1,23 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Records of the otter board: its plate, its law, and the prior of its coefficients."""
+"""Records of the otter board: its plate, and its law with the values of its parameters."""
 
 from itertools import pairwise
 from math import pi, sqrt
 from typing import Annotated, Literal
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from trawl_ros.core.schema import Record
-from trawl_ros.gear.numbers import Coefficient, Degrees, NotNegative, Positive, Vector
-from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.gear.board_parameters import (
+    PARAMETERS_OF_KIND,
+    BoardParameters,
+    CoefficientsRecord,
+)
+from trawl_ros.gear.numbers import Degrees, NotNegative, Positive, Vector
 
 SEA_DENSITY_KG_M3 = 1025.0
 """Density of the water in the added mass of a plate."""
-
-
-class StartRecord(Record):
-    """Prior of the coefficients: start values, spread and bounds in the order of eq. 36."""
-
-    start: tuple[Coefficient, ...]
-    """Start values."""
-    std: tuple[Positive, ...]
-    """Standard deviations."""
-    low: tuple[float, ...]
-    """Lower bounds."""
-    high: tuple[float, ...]
-    """Upper bounds."""
-
-    @model_validator(mode='after')
-    def _twelve(self) -> 'StartRecord':
-        for name in ('start', 'std', 'low', 'high'):
-            if len(getattr(self, name)) != 12:
-                raise ValueError(f'{name}: found {len(getattr(self, name))} numbers, expected 12')
-        for i, (low, start, high) in enumerate(zip(self.low, self.start, self.high, strict=True)):
-            if not low < high or not low <= start <= high:
-                raise ValueError(
-                    f'number {i + 1}: found low {low}, start {start}, high {high}, expected '
-                    'low <= start <= high and low < high'
-                )
-        return self
-
-
-class CoefficientsRecord(Record):
-    """The twelve coefficients of eq. 14, in the order of eq. 36; angles in radians."""
-
-    a1: Coefficient
-    c1: Coefficient
-    a2: Coefficient
-    c2: Coefficient
-    b3: Coefficient
-    c3: Coefficient
-    a4: Coefficient
-    c4: Coefficient
-    b5: Coefficient
-    c5: Coefficient
-    a6: Coefficient
-    c6: Coefficient
-
-    def array(self) -> NDArray[np.float64]:
-        """Return the values (12,) in the order of `COEFFICIENTS`."""
-        return np.array([getattr(self, name) for name in COEFFICIENTS])
 
 
 class InertiaRecord(Record):
@@ -169,14 +124,16 @@ class DoorRecord(Record):
 
 
 class BoardLawRecord(Record):
-    """Law of a board in place of eq. 14, whose straight lines are then added to it.
+    """Law of a board in place of eq. 14.
 
     A ``table`` has points of a flume tank, or those of a ``door`` of the catalogue. A ``foil``
-    computes them for a cambered board that stalls at ``stall_deg`` with the lift ``max_lift``. A
-    table may have ``heel`` and ``trim``, which replace those of its door.
+    computes them for a cambered board that stalls at ``stall_deg`` with the lift ``max_lift``. The
+    straight lines of eq. 14 are added to both. A table may have ``heel`` and ``trim``, which
+    replace those of its door. ``heel`` is eq. 14 with lift against heel, ``stall`` a polar with
+    stall; both have nothing but their parameters.
     """
 
-    kind: Literal['table', 'foil']
+    kind: Literal['table', 'foil', 'heel', 'stall']
     door: str | None = None
     points: Annotated[tuple[PolarPointRecord, ...], Field(max_length=60)] = ()
     heel: Tilts = ()
@@ -193,6 +150,8 @@ class BoardLawRecord(Record):
             raise ValueError(f'found {given} of door and points, expected one of them for a table')
         if self.kind == 'table' and self.door is None and len(self.points) < 2:
             raise ValueError(f'points: found {len(self.points)}, expected at least 2 for a table')
+        if self.kind in ('heel', 'stall') and (extra := self.model_fields_set - {'kind'}):
+            raise ValueError(f'found {", ".join(sorted(extra))}, expected kind alone')
         if self.kind == 'foil' and (given or self.heel or self.trim):
             raise ValueError('found door, points, heel or trim, expected none of them for a foil')
         if self.kind == 'foil' and (self.max_lift is None or self.stall_deg is None):
@@ -205,8 +164,8 @@ class BoardLawRecord(Record):
 class BoardRecord(Record):
     """Otter board; the starboard board is the mirror image of the port board.
 
-    Inertia and added mass are those of a plate of this span and chord by default. With a ``law``
-    the coefficients of eq. 14 are corrections to it, zero by default.
+    Inertia and added mass are those of a plate of this span and chord by default. The coefficients
+    are the parameters of the ``law``, eq. 14 if there is none.
     """
 
     mass_kg: Positive
@@ -224,7 +183,7 @@ class BoardRecord(Record):
     law: BoardLawRecord | None = None
     """Law in place of eq. 14."""
     coefficients: CoefficientsRecord
-    """a1 to c6 of eq. 14, per radian; needed without a `law`, else corrections to it."""
+    """Parameters of the `law`; needed without one and for `heel`, else its defaults."""
     rotary_slope: NotNegative
     """Slope of the lift by which a turning board resists; needed without a `law`, else 2.5."""
     fastening: FasteningRecord
@@ -248,23 +207,31 @@ class BoardRecord(Record):
         if len(known) == len(sizes):
             given.setdefault('inertia', plate_inertia(*known))
             given.setdefault('added_mass_kg', (0.0, plate_added_mass(known[2], known[3]), 0.0))
+        own = parameters_of(given.get('law'))
         if given.get('law') is not None:
-            given.setdefault('coefficients', dict.fromkeys(COEFFICIENTS, 0.0))
             given.setdefault('rotary_slope', 2.5)
+        if own.prior is not None:
+            given.setdefault('coefficients', own.start)
+        if isinstance(given.get('coefficients'), dict):
+            given['coefficients'] = own.ordered(given['coefficients'])
         return given
 
+    @property
+    def parameters(self) -> BoardParameters:
+        """Parameters of the board's law."""
+        return parameters_of(self.law)
+
     @model_validator(mode='after')
-    def _corrections(self) -> 'BoardRecord':
-        if self.law is None:
-            return self
-        for name, low, high in zip(COEFFICIENTS, CORRECTIONS.low, CORRECTIONS.high, strict=True):
-            if not low <= (value := getattr(self.coefficients, name)) <= high:
-                raise ValueError(
-                    f'coefficients.{name}: found {value:g} with a law, to which the coefficients '
-                    f'are corrections, expected {low:g} to {high:g}. Delete `coefficients` if they '
-                    'describe another board, or delete `law`'
-                )
+    def _values_of_parameters(self) -> 'BoardRecord':
+        if faults := list(self.parameters.faults_of_values(self.coefficients)):
+            raise ValueError('\n'.join(faults))
         return self
+
+
+def parameters_of(law: object) -> BoardParameters:
+    """Return the parameters of a law, a record or the content of a file; of eq. 14 without any."""
+    kind = law.get('kind') if isinstance(law, dict) else getattr(law, 'kind', 'eq14')
+    return PARAMETERS_OF_KIND.get(str(kind), PARAMETERS_OF_KIND['eq14'])
 
 
 def _refuse_keys_of_0_1(given: dict[str, object]) -> None:
@@ -299,12 +266,3 @@ def plate_added_mass(span: float, chord: float) -> float:
     aspect = max(span, chord) / min(span, chord)
     strips = SEA_DENSITY_KG_M3 * pi / 4 * min(span, chord) ** 2 * max(span, chord)
     return strips * aspect / sqrt(1 + aspect**2) * (1 - 0.425 * aspect / (1 + aspect**2))
-
-
-CORRECTIONS = StartRecord(
-    start=(0.0,) * 12,
-    std=(0.3, 0.05, 0.5, 0.2, 0.3, 0.05, 0.2, 0.1, 0.3, 0.05, 0.3, 0.15),
-    low=(-2.0, -0.3, -2.0, -1.0, -2.0, -0.5, -2.0, -0.5, -1.0, -0.5, -2.0, -0.5),
-    high=(2.0, 0.3, 2.0, 1.0, 2.0, 0.5, 2.0, 0.5, 2.0, 0.5, 2.0, 0.5),
-)
-"""Prior of the corrections to a board's law if the gear file has none; assumed."""

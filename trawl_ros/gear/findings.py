@@ -9,7 +9,8 @@ from math import pi
 
 import numpy as np
 
-from trawl_ros.gear.boards import CORRECTIONS, FasteningRecord, plate_inertia
+from trawl_ros.gear.board_parameters import CORRECTED, CORRECTIONS
+from trawl_ros.gear.boards import FasteningRecord, plate_inertia
 from trawl_ros.gear.net_plan import NetPlanRecord, PieceRecord, cut_slope
 from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.records import GearRecord
@@ -275,7 +276,7 @@ def _board(gear: GearRecord) -> Iterator[GearFinding]:
     if gear.pair is not None:
         return
     board = gear.board
-    if board.law is not None:
+    if board.parameters is CORRECTED:
         yield from _corrections(gear)
     plate = board.span_m * board.chord_m
     if not 0.7 <= board.area_m2 / plate <= 1.15:

@@ -80,9 +80,9 @@ def load_door(name: str) -> DoorRecord:
 
 
 def polar_of(board: BoardRecord) -> Polar | None:
-    """Return the polar of a board's law; None for the straight lines of eq. 14."""
+    """Return the polar of a table or foil; None for a law without any."""
     law = board.law
-    if law is None:
+    if law is None or law.kind not in ('table', 'foil'):
         return None
     if law.kind == 'foil':
         return _foil(law, board.span_m**2 / board.area_m2)

@@ -8,14 +8,13 @@ from pydantic import Field, ValidationError, model_validator
 
 from trawl_ros.core.errors import GearError
 from trawl_ros.core.schema import FrozenDict, Numbers, Record
-from trawl_ros.gear.boards import (
+from trawl_ros.gear.board_parameters import (
     CORRECTIONS,
-    BoardRecord,
+    EQ14,
     CoefficientsRecord,
-    FasteningRecord,
     StartRecord,
-    plate_inertia,
 )
+from trawl_ros.gear.boards import BoardRecord, FasteningRecord, parameters_of, plate_inertia
 from trawl_ros.gear.catch import CatchRecord
 from trawl_ros.gear.netting import NettingRecord
 from trawl_ros.gear.numbers import Degrees, NotNegative, Positive
@@ -29,7 +28,6 @@ from trawl_ros.gear.rigging import (
     WarpRecord,
 )
 from trawl_ros.gear.sea_water import WaterRecord
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 PLATE_DENSITY_KG_M3 = 7850.0
 """Density of the towing plate and its shackles."""
@@ -106,7 +104,7 @@ def towing_plate(pair: PairRecord) -> BoardRecord:
             'area_m2': 1e-6,
             'span_m': high,
             'chord_m': long,
-            'coefficients': CoefficientsRecord(**dict.fromkeys(COEFFICIENTS, 0.0)),
+            'coefficients': CoefficientsRecord(**dict.fromkeys(EQ14.names, 0.0)),
             'rotary_slope': 0.0,
             'fastening': FasteningRecord(
                 warp_m=(PLATE_WARP_AHEAD_M, 0.0, 0.0),
@@ -209,7 +207,7 @@ class GearRecord(Record):
     floats: FloatRecord = FloatRecord(buoyancy_n=0.0, density_kg_m3=300.0, drag_area_m2=0.0)
     """Floats at each upper wing tip."""
     identification: StartRecord
-    """Prior of the twelve coefficients; needed unless the board has a `law`."""
+    """Prior of the board's coefficients; needed without a `law` and for `heel`."""
     sweep: SweepRecord | None = None
     """Rope between boards and bridles, with backstrops."""
     bridles: Annotated[tuple[OwnBridleRecord, ...], Field(max_length=6)] = (
@@ -224,12 +222,13 @@ class GearRecord(Record):
 
     @model_validator(mode='before')
     @classmethod
-    def _corrections(cls, data: object) -> object:
+    def _usual_prior(cls, data: object) -> object:
         if isinstance(data, dict) and 'identification' not in data:
             board = data.get('board')
-            lawful = isinstance(board, dict) and board.get('law') is not None
-            if lawful or data.get('pair') is not None:
-                return {**data, 'identification': CORRECTIONS}
+            own = parameters_of(board.get('law') if isinstance(board, dict) else None)
+            prior = CORRECTIONS if data.get('pair') is not None else own.prior
+            if prior is not None:
+                return {**data, 'identification': prior}
         return data
 
     @model_validator(mode='before')
@@ -250,6 +249,12 @@ class GearRecord(Record):
             return data
         forks = tuple(OwnBridleRecord(name=end, at_net=end) for end in ENDS)
         return {**data, 'bridles': forks}
+
+    @model_validator(mode='after')
+    def _prior_of_parameters(self) -> 'GearRecord':
+        if faults := list(self.board.parameters.faults_of_prior(self.identification)):
+            raise ValueError('\n'.join(faults))
+        return self
 
     @model_validator(mode='after')
     def _one_or_two_ships(self) -> 'GearRecord':

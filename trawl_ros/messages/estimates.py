@@ -1,6 +1,9 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of the identification: coefficients, their covariance, and innovations."""
+"""Messages of the identification: coefficients, their covariance, and innovations.
+
+``names`` are those of the parameters of the boards' law, by default of eq. 14.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,8 +19,6 @@ from trawl_ros.messages.pieces import TopicMessage, joint_column
 from trawl_ros.messages.stamps import header
 from trawl_ros.records.channels import CHANNELS
 from trawl_ros.records.coefficients import COEFFICIENTS
-
-LABEL = ','.join(COEFFICIENTS)
 
 ESTIMATE = 'identification/estimate'
 COVARIANCE = 'identification/covariance'
@@ -40,15 +41,16 @@ class ChannelInnovation:
     ratio: float
 
 
-def estimate_message(values: Sequence[float] | FloatArray) -> TopicMessage:
-    """Turn the twelve coefficients, in the order of `COEFFICIENTS`, into a message."""
-    return ESTIMATE, _array(np.asarray(values, dtype=float), (len(COEFFICIENTS),))
+def estimate_message(
+    values: Sequence[float] | FloatArray, names: Sequence[str] = COEFFICIENTS
+) -> TopicMessage:
+    """Turn the coefficients (q,) into a message."""
+    return ESTIMATE, _array(np.asarray(values, dtype=float), names, 1)
 
 
-def covariance_message(matrix: FloatArray) -> TopicMessage:
-    """Turn their covariance (12, 12) into a message, row-major."""
-    size = len(COEFFICIENTS)
-    return COVARIANCE, _array(np.asarray(matrix, dtype=float), (size, size))
+def covariance_message(matrix: FloatArray, names: Sequence[str] = COEFFICIENTS) -> TopicMessage:
+    """Turn their covariance (q, q) into a message, row-major."""
+    return COVARIANCE, _array(np.asarray(matrix, dtype=float), names, 2)
 
 
 def innovation_message(stamp: int, innovations: Sequence[ChannelInnovation]) -> TopicMessage:
@@ -65,10 +67,14 @@ def innovation_message(stamp: int, innovations: Sequence[ChannelInnovation]) -> 
 
 
 def coefficients_message(
-    stamp: int, values: FloatArray, std: FloatArray, determined: Sequence[bool]
+    stamp: int,
+    values: FloatArray,
+    std: FloatArray,
+    determined: Sequence[bool],
+    names: Sequence[str] = COEFFICIENTS,
 ) -> TopicMessage:
     """Turn the coefficients into one stamped message (ns): a status for each, with its name."""
-    rows = zip(COEFFICIENTS, values, std, determined, strict=True)
+    rows = zip(names, values, std, determined, strict=True)
     return COEFFICIENTS_BY_NAME, diagnostic_array(
         stamp,
         [
@@ -104,27 +110,26 @@ def innovations_message(stamp: int, innovations: Sequence[ChannelInnovation]) ->
     )
 
 
-def read_estimate(message: Any) -> FloatArray:
-    """Read the twelve coefficients, shape (12,).
+def read_estimate(message: Any, names: Sequence[str] = COEFFICIENTS) -> FloatArray:
+    """Read the coefficients (q,).
 
     Raises
     ------
     MessageError
         If size or label are not those of the contract.
     """
-    return _values(ESTIMATE, message, (len(COEFFICIENTS),))
+    return _values(ESTIMATE, message, names, 1)
 
 
-def read_covariance(message: Any) -> FloatArray:
-    """Read the covariance, shape (12, 12).
+def read_covariance(message: Any, names: Sequence[str] = COEFFICIENTS) -> FloatArray:
+    """Read the covariance (q, q).
 
     Raises
     ------
     MessageError
         If size or label are not those of the contract.
     """
-    size = len(COEFFICIENTS)
-    return _values(COVARIANCE, message, (size, size))
+    return _values(COVARIANCE, message, names, 2)
 
 
 def read_innovations(message: Any) -> tuple[ChannelInnovation, ...]:
@@ -141,25 +146,29 @@ def read_innovations(message: Any) -> tuple[ChannelInnovation, ...]:
     )
 
 
-def _array(values: FloatArray, shape: tuple[int, ...]) -> ros.std_msgs__msg__Float64MultiArray:
+def _array(
+    values: FloatArray, names: Sequence[str], dimensions: int
+) -> ros.std_msgs__msg__Float64MultiArray:
+    shape, label = (len(names),) * dimensions, ','.join(names)
     if values.shape != shape:
         raise ValueError(f'coefficients of shape {values.shape}, expected {shape}')
-    dimensions = [
+    layout = [
         # A stride is the number of values from one entry of the dimension outside to its next.
-        ros.std_msgs__msg__MultiArrayDimension(LABEL, size, int(np.prod(shape[axis:])))
+        ros.std_msgs__msg__MultiArrayDimension(label, size, int(np.prod(shape[axis:])))
         for axis, size in enumerate(shape)
     ]
     return ros.std_msgs__msg__Float64MultiArray(
-        ros.std_msgs__msg__MultiArrayLayout(dimensions, 0), values.ravel()
+        ros.std_msgs__msg__MultiArrayLayout(layout, 0), values.ravel()
     )
 
 
-def _values(topic: str, message: Any, shape: tuple[int, ...]) -> FloatArray:
+def _values(topic: str, message: Any, names: Sequence[str], dimensions: int) -> FloatArray:
+    shape, label = (len(names),) * dimensions, ','.join(names)
     sizes = tuple(dimension.size for dimension in message.layout.dim)
     offset = message.layout.data_offset
     values = np.asarray(message.data, dtype=float)[offset:]
     if sizes != shape or values.size != np.prod(shape):
         raise MessageError(f'{topic}: {values.size} values in dimensions {sizes}; expected {shape}')
-    if message.layout.dim[0].label != LABEL:
-        raise MessageError(f'{topic}: label {message.layout.dim[0].label!r}; expected {LABEL!r}')
+    if message.layout.dim[0].label != label:
+        raise MessageError(f'{topic}: label {message.layout.dim[0].label!r}; expected {label!r}')
     return values.reshape(shape)

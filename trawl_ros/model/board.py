@@ -14,16 +14,9 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.model.bar_pass import water_of
-from trawl_ros.model.board_law import (
-    LAW_RANGE,
-    fill_coefficients,
-    fill_flow,
-    fill_loads,
-    fill_own_loads,
-    fill_total,
-)
-from trawl_ros.model.board_table import TableLaw
-from trawl_ros.model.compiled import as_kind, stepped_among
+from trawl_ros.model.board_law import fill_flow, fill_loads, fill_own_loads, fill_total
+from trawl_ros.model.board_laws import EQ14, BoardLaw, real_like
+from trawl_ros.model.compiled import as_kind
 from trawl_ros.model.hooks import CoefficientModifier
 from trawl_ros.model.numerics import STEP, transpose
 from trawl_ros.model.rotations import about_axis
@@ -62,8 +55,8 @@ class Board:
     rerigged : tuple of tuples of float
         Deviation (rad) of the installation angles of the port and of the starboard board from
         ``installation``.
-    law : TableLaw or None
-        Law in place of eq. 14, whose coefficients are then corrections to it; None is eq. 14.
+    law : BoardLaw
+        Law whose parameters are the board's coefficients.
     """
 
     mass: float
@@ -77,13 +70,13 @@ class Board:
     rotary_slope: float
     added_mass: FloatArray
     coefficient_modifier: CoefficientModifier | None = None
-    law: TableLaw | None = None
+    law: BoardLaw = EQ14
     rerigged: tuple[Angles, Angles] = (AS_INSTALLED, AS_INSTALLED)
 
     @property
-    def law_range(self) -> tuple[float, float]:
-        """Least and greatest angle of attack (rad) for which the law holds unchanged."""
-        return LAW_RANGE if self.law is None else self.law.range
+    def is_plain(self) -> bool:
+        """True for unmodified eq. 14, whose loads are compiled as a whole."""
+        return self.coefficient_modifier is None and self.law == EQ14
 
     @cached_property
     def installed(self) -> FloatArray:
@@ -130,36 +123,6 @@ class Board:
 def _turn(angles: Angles | FloatArray) -> FloatArray:
     yaw, pitch, roll = angles
     return about_axis(2, yaw) @ about_axis(1, pitch) @ about_axis(0, roll)
-
-
-def coefficients_at(values: FloatArray, attack: FloatArray, slip: FloatArray) -> FloatArray:
-    """Return the six force and moment coefficients at given angles (eq. 14).
-
-    Parameters
-    ----------
-    values : (12,) array
-        In the order of `COEFFICIENTS`, per radian and dimensionless.
-    attack, slip : (...) arrays
-        α and β, rad.
-
-    Returns
-    -------
-    (..., 6) array
-        C_x^F, C_y^F, C_z^F, C_x^M, C_y^M, C_z^M. Outside 0-40° of attack lift, moments and
-        the part of the slip fade; drag stays constant and never becomes thrust. Outside ±40° of
-        slip its part stays constant.
-    """
-    shape = np.broadcast_shapes(np.shape(attack), np.shape(slip))
-    given = values, *(np.broadcast_to(angles, shape).ravel() for angles in (attack, slip))
-    values, *angles = as_kind(complex, *given)
-    coefficients = np.empty((*angles[0].shape, 6), complex)
-    fill_coefficients(values, *angles, coefficients)
-    return _like(given, coefficients).reshape(*shape, 6)
-
-
-def _like(given: tuple[FloatArray, ...], found: FloatArray) -> FloatArray:
-    """Return a result of the law, which is compiled for complex numbers, real for real input."""
-    return found if stepped_among(*given) else found.real
 
 
 def mirrored_axes(outward: FloatArray) -> FloatArray:
@@ -223,9 +186,9 @@ def flow_at(
     attack, slip = np.empty((2, len(flow)), complex)
     fill_flow(*as_kind(complex, *given), flow, attack, slip)
     return BoardFlow(
-        attack=_like(given, attack).reshape(shape),
-        slip=_like(given, slip).reshape(shape),
-        flow=_like(given, flow).reshape(*shape, 3),
+        attack=real_like(given, attack).reshape(shape),
+        slip=real_like(given, slip).reshape(shape),
+        flow=real_like(given, flow).reshape(*shape, 3),
         density=np.broadcast_to(water.density_at(position[..., 2]), shape),
         lean=outward * rotation[..., 2, 1],
         rise=np.broadcast_to(rotation[..., 2, 0], shape),
@@ -236,10 +199,7 @@ def hydrodynamics(
     board: Board, values: FloatArray, flow: BoardFlow
 ) -> tuple[FloatArray, FloatArray]:
     """Return force (..., 3) N and moment (..., 3) N m in the outward frame (eq. 12-14)."""
-    if board.law is None:
-        coefficients = coefficients_at(values, flow.attack, flow.slip)
-    else:
-        coefficients = board.law(values, flow.attack, flow.slip, flow.lean, flow.rise)
+    coefficients = board.law(values, flow.attack, flow.slip, flow.lean, flow.rise)
     if board.coefficient_modifier is not None:
         coefficients = board.coefficient_modifier(coefficients, flow.attack, flow.slip, flow.lean)
     given = flow.density.ravel(), flow.flow.reshape(-1, 3), coefficients.reshape(-1, 6)
@@ -251,7 +211,7 @@ def hydrodynamics(
         loads[0],
         loads[1],
     )
-    force, moment = _like(given, loads)
+    force, moment = real_like(given, loads)
     return force.reshape(flow.flow.shape), moment.reshape(flow.flow.shape)
 
 
@@ -292,9 +252,9 @@ def own_load(
         _flat(rate, shape, 3),
     )
     turning = board.inertia, board.rotary_resistance
-    if board.coefficient_modifier is None and board.law is None:
+    if board.is_plain:
         total = _by_formula(board, as_kind(complex, *given), water)
-        return _like(given, total).reshape(*shape, 6)
+        return real_like(given, total).reshape(*shape, 6)
     total = np.empty((len(given[2]), 6), complex)
     flow = flow_at(board, outward, position, rotation, velocity, rate, water)
     force, moment = (_flat(part, shape, 3) for part in hydrodynamics(board, values, flow))
@@ -310,7 +270,7 @@ def own_load(
         moment,
     )
     fill_total(*turning, *as_kind(complex, *rest), total)
-    return _like(rest, total).reshape(*shape, 6)
+    return real_like(rest, total).reshape(*shape, 6)
 
 
 def _by_formula(board: Board, given: list[FloatArray], water: Water) -> FloatArray:
@@ -340,10 +300,10 @@ def own_load_slopes(
     rate: FloatArray,
     water: Water,
 ) -> FloatArray:
-    """Return the derivatives (n, 6, 12) of `own_load` of ``n`` boards by the coefficients."""
+    """Return the derivatives (n, 6, q) of `own_load` of ``n`` boards by the coefficients."""
     moving = position, rotation, velocity, rate
     steps = values + 1j * STEP * np.eye(len(values))
-    if board.coefficient_modifier is None and board.law is None:
+    if board.is_plain:
         _, *rest = as_kind(complex, values, board.middle(outward), outward, *moving)
         loads = [_by_formula(board, [step, *rest], water) for step in steps]
     else:

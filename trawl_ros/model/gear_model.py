@@ -13,10 +13,11 @@ from functools import cached_property
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
+from trawl_ros.gear.boards import BoardRecord
 from trawl_ros.gear.polars import polar_of
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board import Board
-from trawl_ros.model.board_table import TableLaw
+from trawl_ros.model.board_laws import EQ14, BoardLaw, FormulaLaw, TableLaw
 from trawl_ros.model.hooks import CoefficientModifier, ComposedModifier, NodeForce
 from trawl_ros.model.kite import Kite, build_kite
 from trawl_ros.model.line import BarGroup, BarProperties
@@ -37,7 +38,6 @@ from trawl_ros.model.rigging import (
     rigging_nodes,
 )
 from trawl_ros.model.water import Water, build_water
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 OUTWARD = np.array([1.0, -1.0])
 """Sign of y that points away from the net's middle: port, starboard."""
@@ -227,7 +227,7 @@ class GearModel:
         return inside[:, 0] & inside[:, 1]
 
     def with_coefficients(self, values: FloatArray) -> 'GearModel':
-        """Return the gear with other board coefficients, in the order of eq. 36."""
+        """Return the gear with other board coefficients, in the order of their law."""
         return replace(self, coefficients=np.asarray(values))
 
     def with_board(self, **changes: object) -> 'GearModel':
@@ -266,7 +266,6 @@ class GearModel:
 def build_board(gear: GearRecord) -> Board:
     """Return the board of a gear file."""
     record = gear.board
-    polar = polar_of(record)
     i = record.inertia
     inertia = np.array(
         [
@@ -293,8 +292,15 @@ def build_board(gear: GearRecord) -> Board:
         installation=tuple(np.radians([angles.epsilon_deg, angles.zeta_deg, angles.eta_deg])),
         rotary_slope=record.rotary_slope,
         added_mass=np.array(record.added_mass_kg),
-        law=None if polar is None else TableLaw(polar),
+        law=_law(record),
     )
+
+
+def _law(board: BoardRecord) -> BoardLaw:
+    """Return the law of a board's record."""
+    if (polar := polar_of(board)) is not None:
+        return TableLaw(polar)
+    return EQ14 if board.law is None else FormulaLaw(board.law.kind)
 
 
 def build_model(gear: GearRecord) -> GearModel:
@@ -353,7 +359,7 @@ def build_model(gear: GearRecord) -> GearModel:
         water=water,
         board=board,
         kite=build_kite(gear),
-        coefficients=np.array([getattr(gear.board.coefficients, c) for c in COEFFICIENTS]),
+        coefficients=gear.board.coefficients.array(),
         bars=BarProperties(*np.array(build.rows).T),
         ends=ends,
         rest=np.array(build.rest),

@@ -124,7 +124,8 @@ class DiscrepancyNode(TrawlNode):
         from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 
         estimate = self.parameters['estimate']
-        knowledge = of_identification(Path(estimate)) if estimate else None
+        names = self._gear.board.parameters.names
+        knowledge = of_identification(Path(estimate), names) if estimate else None
         last = self._book.last_number() if self._book is not None else 0
         return OnsetMonitor(self._gear, knowledge, last_number=last)
 

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""`identification_node`: refits the boards' twelve coefficients while samples come in."""
+"""`identification_node`: refits the boards' coefficients while samples come in."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -263,9 +263,9 @@ class IdentificationNode(TrawlNode):
     def _publish(self, outcome: EstimatorOutcome) -> None:
         told, windows = outcome.told, outcome.estimate
         if told is not None and told is not self._sent:
-            self.send(*estimate_message(told.values))
-            self.send(*covariance_message(told.covariance))
-            known = told.values, told.std, told.determined
+            self.send(*estimate_message(told.values, told.names))
+            self.send(*covariance_message(told.covariance, told.names))
+            known = told.values, told.std, told.determined, told.names
             self.send(*coefficients_message(told.stamp, *known))
         new = windows is not self._by_windows
         if windows is not None and new and windows.innovation is not None:

@@ -107,11 +107,11 @@ TRUTH = (
 ESTIMATES = (
     Topic(
         'identification/estimate', 'std_msgs/msg/Float64MultiArray', '', None,
-        'The twelve board coefficients in the order of eq. 36.', _IDENTIFIED, latched=True,
+        'The board coefficients; the label names them.', _IDENTIFIED, latched=True,
     ),
     Topic(
         'identification/covariance', 'std_msgs/msg/Float64MultiArray', '', None,
-        'Their covariance, 12 x 12 row-major.', _IDENTIFIED, latched=True,
+        'Their covariance, row-major.', _IDENTIFIED, latched=True,
     ),
     Topic(
         'identification/status', 'diagnostic_msgs/msg/DiagnosticArray', '', None,

@@ -149,7 +149,7 @@ def find_equilibrium(
             f'{lean}° up',
             'collapsed',
         )
-    low, high = model.board.law_range
+    low, high = model.board.law.range
     return Equilibrium(
         point=point,
         tow=tow,
@@ -325,7 +325,7 @@ def require_usable(model: GearModel, found: Equilibrium) -> SteadyState:
             f'{where}: the gear breaks the surface by {found.highest:.1f} m', 'surfaced'
         )
     if found.outside_law:
-        seen, (low, high) = found.observables, np.degrees(model.board.law_range)
+        seen, (low, high) = found.observables, np.degrees(model.board.law.range)
         both = np.degrees([seen.port_attack, seen.starboard_attack])
         attack = max(both, key=lambda angle: abs(angle - 0.5 * (low + high)))
         raise NoSteadyState(

@@ -16,7 +16,6 @@ from trawl_ros.core.arrays import FloatArray
 from trawl_ros.effects.base.effect import Effect, Situation
 from trawl_ros.effects.effect_set import NO_EFFECTS, ActiveEffect, EffectSet
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.effect_sensitivity import by_effects, chained, sensor_slopes, shown_values
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
@@ -34,8 +33,8 @@ class Prediction:
     ----------
     values : (n_observables,) array
         Readings as sensors show them.
-    jacobian : (n_observables, 15 + m) array
-        Derivatives by `PARAMETERS`, with the m values of free effects after the coefficients.
+    jacobian : (n_observables, q + m + 3) array
+        Derivatives by the q coefficients, the m values of free effects, and `INPUTS`.
     slow : (n_observables,) array
         Shape of the slowest mode, per metre of net depth.
     state
@@ -78,7 +77,7 @@ class Predictor:
     fixed
         Effects that act with known values.
     free
-        Effects whose values follow the twelve coefficients.
+        Effects whose values follow the coefficients.
     at
         Situation of the prediction, except for warp lengths and speed.
     without
@@ -103,7 +102,7 @@ class Predictor:
     def acting(self, coefficients: FloatArray) -> EffectSet:
         """Return the effect set with the values that follow the coefficients."""
         there = self.fixed.without(self.new) if self.absent else self.fixed
-        place = len(COEFFICIENTS)
+        place = len(self.model.coefficients)
         for effect in self.free:
             number = len(effect.parameters)
             if not self.absent:
@@ -122,8 +121,11 @@ class Predictor:
 
     def gear(self, coefficients: FloatArray, inputs: FloatArray) -> GearModel:
         """Return the gear model with its effects, where counters and log show ``inputs`` (3,)."""
-        board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
+        board = self._with_board(coefficients)
         return self.acting(coefficients).gear(board, self._situation(inputs))
+
+    def _with_board(self, coefficients: FloatArray) -> GearModel:
+        return self.model.with_coefficients(coefficients[: len(self.model.coefficients)])
 
     def with_net(self, drag: float, weight: float) -> 'Predictor':
         """Return the predictor with these factors on drag and weight in water of the net."""
@@ -159,8 +161,8 @@ class Predictor:
 
         Parameters
         ----------
-        coefficients : (12 + m,) array
-            In the order of `COEFFICIENTS`, and the values of the free effects.
+        coefficients : (q + m,) array
+            Of the boards, in the order of their law, and the values of the free effects.
         port_length, starboard_length, speed
             Warp lengths as counters show them (m), and speed as the log shows it (m/s).
         start
@@ -179,14 +181,14 @@ class Predictor:
             return last
         inputs = np.array([port_length, starboard_length, speed])
         at, acting = self._situation(inputs), self.acting(coefficients)
-        board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
+        board = self._with_board(coefficients)
         gear = acting.gear(board, at)
         port, starboard, through = map(float, acting.apply_to_inputs(inputs, at))
         point = OperatingPoint(port, starboard, through)
         found = find_equilibrium(gear, point, start, cold=start is None)
         values, jacobian = found.observables.array(), sensitivities(gear, found)
         shown = chained(board, gear, found, jacobian, acting, inputs, at)
-        extra = np.zeros((len(values), len(coefficients) - len(COEFFICIENTS)))
+        extra = np.zeros((len(values), len(coefficients) - len(board.coefficients)))
         if self.free and not self.absent:
             wanted = [acting.of(effect) for effect in self.free]
             extra = by_effects(board, gear, found, jacobian, acting, wanted, inputs, at)
@@ -211,14 +213,14 @@ class Predictor:
         Parameters
         ----------
         coefficients, inputs
-            Coefficients (12,), and warp lengths and speed (3,) of a prediction.
+            Coefficients (q,), and warp lengths and speed (3,) of a prediction.
         found
             Its equilibrium.
         wanted
             Effects whose signatures are wanted.
         """
         at, acting = self._situation(inputs), self.acting(coefficients)
-        board = self.model.with_coefficients(coefficients[: len(COEFFICIENTS)])
+        board = self._with_board(coefficients)
         gear = acting.gear(board, at)
         jacobian = sensitivities(gear, found)
         return by_effects(board, gear, found, jacobian, acting, wanted, inputs, at)

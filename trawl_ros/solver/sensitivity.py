@@ -16,14 +16,11 @@ from trawl_ros.model.gear_model import OUTWARD, GearModel
 from trawl_ros.model.slopes.along import add_forces_along_tow
 from trawl_ros.model.slopes.observed import observed_slopes
 from trawl_ros.model.state import State, TowSlopes, held_boundary
-from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.records.channels import INPUTS
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.linear.factor import solve_refined
 from trawl_ros.solver.rest_linearisation import rest_linearisation
 from trawl_ros.solver.warm_start import Tangent
-
-PARAMETERS = (*COEFFICIENTS, 'port_length', 'starboard_length', 'speed')
-"""Parameters of the derivatives: per unit coefficient, per m, per m, per m/s."""
 
 
 def _ahead(found: Equilibrium) -> FloatArray:
@@ -32,7 +29,7 @@ def _ahead(found: Equilibrium) -> FloatArray:
 
 
 def coefficient_pushes(model: GearModel, state: State) -> FloatArray:
-    """Return derivatives (12, 12) of the boards' own loads by the coefficients."""
+    """Return derivatives (12, q) of the boards' own loads by the coefficients."""
     slopes: FloatArray = own_load_slopes(
         model.board,
         model.coefficients,
@@ -42,24 +39,25 @@ def coefficient_pushes(model: GearModel, state: State) -> FloatArray:
         state.board_velocities,
         state.board_rates,
         model.water,
-    ).reshape(12, len(COEFFICIENTS))
+    ).reshape(12, -1)
     return slopes
 
 
 def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
-    """Return the derivatives of the observables by the parameters.
+    """Return the derivatives of the observables by coefficients and towing inputs.
 
     Returns
     -------
-    (n_observables, n_parameters) array
-        In the orders of `OBSERVABLES` and `PARAMETERS`.
+    (n_observables, q + 3) array
+        In the order of `OBSERVABLES`; by the q parameters of the boards' law, per unit, and by
+        `INPUTS`, per m and per m/s.
     """
-    number, state = len(COEFFICIENTS), found.state
-    pushes = np.zeros((model.dof, len(PARAMETERS)))
+    number, state = len(model.coefficients), found.state
+    pushes = np.zeros((model.dof, number + len(INPUTS)))
     # Coefficients change only the loads on the boards, the last twelve rows.
     pushes[-12:, :number] = coefficient_pushes(model, state)
     known = rest_linearisation(model, state, found.tow)
-    velocities, boundary = _changed_motion(model, found)
+    velocities, boundary = _changed_motion(model, found, pushes.shape[1])
     add_forces_along_tow(model, state, found.tow, boundary, pushes)
     # The whole gear moves faster, so its drag changes by C times the velocity.
     pushes[:, -1] -= model.pattern.times(known.motion.damping, velocities[:, -1])
@@ -68,9 +66,11 @@ def sensitivities(model: GearModel, found: Equilibrium) -> FloatArray:
     return observed_slopes(model, state, found.tow, shifts, velocities, boundary)[1]
 
 
-def _changed_motion(model: GearModel, found: Equilibrium) -> tuple[FloatArray, TowSlopes]:
-    """Return the change of velocities (dof, n_parameters) and boundary with the parameters."""
-    number, ahead = len(PARAMETERS), _ahead(found)
+def _changed_motion(
+    model: GearModel, found: Equilibrium, number: int
+) -> tuple[FloatArray, TowSlopes]:
+    """Return the change of velocities (dof, number) and boundary with the parameters."""
+    ahead = _ahead(found)
     velocities, boundary = np.zeros((model.dof, number)), held_boundary(number)
     boards = velocities[3 * model.nodes :].reshape(2, 6, number)
     velocities[: 3 * model.nodes, -1] = np.tile(ahead, model.nodes)

@@ -137,7 +137,7 @@ def trim(
     22.0
     """
     model.gear.require_boards('whose fastening points could be found')
-    low, high = model.board.law_range
+    low, high = model.board.law.range
     if not low <= attack <= high:
         raise NoSteadyState(
             f'found a wanted attack angle of {np.degrees(attack):.1f}°, expected one in the range '

@@ -67,8 +67,8 @@ OPTIONS = WarmStartOptions()
 class Tangent:
     """Tangent of a steady state.
 
-    ``columns`` (dof, 15) are displacements per unit of the twelve coefficients, per m of either
-    warp and per m/s of speed, at ``coefficients`` (12,) and unstretched lengths ``rest`` (m,).
+    ``columns`` (dof, q + 3) are displacements per unit of the q coefficients, per m of either
+    warp and per m/s of speed, at ``coefficients`` (q,) and unstretched lengths ``rest`` (m,).
     """
 
     coefficients: FloatArray

@@ -23,7 +23,6 @@ from trawl_ros.model.water import build_water
 from trawl_ros.plots.moments import GEAR, MOUTH, SECTION
 from trawl_ros.plots.reading import TRUTH, QuantityReader
 from trawl_ros.plots.records import Quantities
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import (
     FixSample,
     HeadingSample,
@@ -287,16 +286,20 @@ def _coefficients_of(stamp: int, statuses: Sequence[Status]) -> Coefficients | N
         If a number of it is none.
     """
     status = next((status for status in statuses if status.name == COEFFICIENT_STATUS), None)
-    if status is None or COEFFICIENTS[0] not in status.values:
+    if status is None:
+        return None
+    flag = ' determined'
+    names = [key.removesuffix(flag) for key in status.values if key.endswith(flag)]
+    if not names:
         return None
     intervals = {
         name: Interval(
             read_number(status, name),
             read_number(status, f'{name} low'),
             read_number(status, f'{name} high'),
-            status.values.get(f'{name} determined') == 'true',
+            status.values[name + flag] == 'true',
         )
-        for name in COEFFICIENTS
+        for name in names
     }
     windows = int(read_number(status, 'windows'))
     return Coefficients(stamp, windows, intervals, one_line(status.message, DIAGNOSIS.value))

@@ -13,7 +13,6 @@ from trawl_ros.estimation.fit.estimate import posterior_of, undetermined
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import linearise
-from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.fit.window_search import NO_STEADY_STATE
 from trawl_ros.records.channels import CHANNELS, INPUTS
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -147,7 +146,7 @@ def test_errors_of_the_log_are_not_taken_for_the_boards(sea, model, prior):
 def test_a_bound_that_is_in_the_way_is_respected_and_named(sea, model, prior):
     low = np.array(prior.low)
     low[2] = sea.TRUTH[2] + 0.2 * sea.STD[2]
-    tight = ParameterVector(prior.start, prior.std, low, prior.high)
+    tight = replace(prior, low=low)
     windows = sea.trial_windows(model, np.random.default_rng(0), noise=0.3)
     _, estimate = estimated(sea, model, tight, windows)
     assert estimate.values[2] == low[2]
@@ -176,7 +175,10 @@ def test_two_open_directions_are_named_apart(sea, prior):
     rows = np.random.default_rng(1).normal(size=(40, 12)) * 30.0
     rows[:, 5] = 0.0
     rows[:, 11] = -rows[:, 10]
-    names = {frozenset(c.names) for c in undetermined(posterior_of(rows.T @ rows, prior.std, 1.0))}
+    names = {
+        frozenset(c.names)
+        for c in undetermined(posterior_of(rows.T @ rows, prior.std, 1.0), prior.names)
+    }
     assert names == {frozenset({'c3'}), frozenset({'a6', 'c6'})}
 
 
@@ -238,9 +240,7 @@ def test_where_the_answer_lies_beyond_the_steady_states_it_says_so(sea, prior):
     model = sea.ClosedForm(stops_at=sea.TRUTH[0] - 0.5 * sea.STD[0])
     start = np.array(prior.start)
     start[0] = sea.TRUTH[0] - sea.STD[0]
-    _, estimate = estimated(
-        sea, model, ParameterVector(start, prior.std, prior.low, prior.high), windows
-    )
+    _, estimate = estimated(sea, model, replace(prior, start=start), windows)
     assert not estimate.converged
     assert NO_STEADY_STATE in estimate.reason
 
@@ -298,9 +298,9 @@ def test_a_prior_that_contradicts_itself_is_refused_by_name(prior):
     start = np.array(prior.start)
     start[3] = prior.high[3] + 1.0
     with pytest.raises(GearError, match=COEFFICIENTS[3]):
-        ParameterVector(start, prior.std, prior.low, prior.high)
+        replace(prior, start=start)
     with pytest.raises(GearError, match=r'identification\.std'):
-        ParameterVector(prior.start, prior.std[:5], prior.low, prior.high)
+        replace(prior, std=prior.std[:5])
 
 
 def test_a_confidence_of_one_is_refused():

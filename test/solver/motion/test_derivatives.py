@@ -12,9 +12,9 @@ from trawl_ros.diagnosis.inference.candidates import Candidate
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.fit.error_terms import Scheme
-from trawl_ros.estimation.fit.parameters import BOARD
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.first_guess import at_velocity
@@ -28,7 +28,10 @@ from trawl_ros.solver.stepper import StepFailed, Stepper, at_rest
 STEP_S = 0.2
 EFFECTS = ('board_added_mass', 'counter_scale', 'counter_offset', 'other_wire', 'speed_log')
 PARAMETERS = MotionParameters(
-    net=True, effects=tuple(catalogue()[name] for name in EFFECTS), inputs=('speed drift',)
+    coefficients=COEFFICIENTS,
+    net=True,
+    effects=tuple(catalogue()[name] for name in EFFECTS),
+    inputs=('speed drift',),
 )
 ADDED = ActiveEffect(catalogue()['board_added_mass'], np.array([0.5]))
 ACTING = EffectSet((ADDED,))
@@ -127,7 +130,7 @@ def changed(model: GearModel, name: str, change: float) -> Changed:
 
 def towed_again(run: Differentiated, case: Changed) -> np.ndarray:
     """Observables of the tow with the plain stepper, in the steps of the one with derivatives."""
-    none = MotionParameters(coefficients=False)
+    none = MotionParameters()
 
     def inputs(time: float) -> InputPoint:
         point = hauling(time)
@@ -229,7 +232,7 @@ def test_derivatives_over_ten_minutes(
 def test_names_are_those_of_a_fit(quick: Differentiated) -> None:
     effects = [Candidate(catalogue()[name], np.zeros(0)).group for name in EFFECTS]
     net = Scheme(net_drag=0.2, net_weight=0.2).model_errors.only('net')
-    expected = (*BOARD.names, *net.names, *(name for group in effects for name in group.names))
+    expected = (*COEFFICIENTS, *net.names, *(name for group in effects for name in group.names))
     assert PARAMETERS.names[:21] == expected
     assert quick.slopes.shape[2] == len(PARAMETERS)
 
@@ -243,7 +246,7 @@ def test_shipped_tolerance_is_as_exact(model: GearModel) -> None:
 
 
 def test_slow_motions_die_out_as_they_should(model: GearModel) -> None:
-    parameters = MotionParameters(coefficients=False, motions=2)
+    parameters = MotionParameters(motions=2)
     tow = DifferentiatedTow(model, parameters, lambda _: hauling(0.0))
     rates, _ = slow_motions(tow.model, tow.first.state, tow.course.tow, 2)
     first = tow.observed().slopes
@@ -256,8 +259,8 @@ def test_slow_motions_die_out_as_they_should(model: GearModel) -> None:
 
 
 def test_without_parameters_it_is_the_plain_tow(model: GearModel) -> None:
-    plain = DifferentiatedTow(model, MotionParameters(coefficients=False), hauling)
-    along = DifferentiatedTow(model, MotionParameters(), hauling)
+    plain = DifferentiatedTow(model, MotionParameters(), hauling)
+    along = DifferentiatedTow(model, MotionParameters(coefficients=COEFFICIENTS), hauling)
     for _ in range(50):
         plain.advance(STEP_S)
         along.advance(STEP_S)
@@ -266,7 +269,7 @@ def test_without_parameters_it_is_the_plain_tow(model: GearModel) -> None:
 
 
 def test_a_step_that_fails_leaves_the_tow_where_it_was(model: GearModel) -> None:
-    tow = DifferentiatedTow(model, MotionParameters(), hauling)
+    tow = DifferentiatedTow(model, MotionParameters(coefficients=COEFFICIENTS), hauling)
     tow.step(STEP_S)
     before = tow.time, tow.motion, tow.slopes, tow.course
     never = LinearisedStepOptions(iterations=0, full_newton_iterations=0)

@@ -37,7 +37,7 @@ def hauled(request, model):
             for one in map(catalogue().get, request.param)
         )
     )
-    tow = DifferentiatedTow(model, MotionParameters(coefficients=False), hauling, acting)
+    tow = DifferentiatedTow(model, MotionParameters(), hauling, acting)
     for _ in range(5):
         tow.advance(2.0)
     motion = tow.motion

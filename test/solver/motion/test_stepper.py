@@ -22,7 +22,7 @@ from trawl_ros.solver.stepper import (
     at_rest,
 )
 
-NONE = MotionParameters(coefficients=False)
+NONE = MotionParameters()
 
 
 def hauling(time: float) -> InputPoint:

@@ -14,7 +14,6 @@ from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.parameters import ParameterGroup, ParameterVector
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.predict import Predictor
 
@@ -105,7 +104,7 @@ def signatures(
         if situated.absent or not active:
             by_window.append(np.zeros((len(rows), number)))
             continue
-        board = linear.at[: len(COEFFICIENTS)]
+        board = linear.at[: len(predictor.model.coefficients)]
         by_window.append(situated.signatures(board, linear.inputs, linear.state, active)[rows])
     return by_window
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Knowledge of the boards, and of how large errors are, with which a tow is watched."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from trawl_ros.core.schema import validated
 from trawl_ros.estimation.fit.error_terms import GROUPS
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.processes import ErrorSizes
-from trawl_ros.gear.boards import CoefficientsRecord
+from trawl_ros.gear.board_parameters import CoefficientsRecord
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -37,7 +37,7 @@ class Knowledge:
     Attributes
     ----------
     values, covariance
-        Coefficients (12,) of the boards, and their covariance (12, 12).
+        Coefficients (q,) of the boards, and their covariance (12, 12).
     densities
         Noise densities of channels as steady windows show them (`noise_densities`). The scatter of
         readings counts where it is more, or where they are not known.
@@ -57,8 +57,10 @@ def of_gear_file(gear: GearRecord) -> Knowledge:
     return Knowledge(prior.start, np.diag(prior.std**2))
 
 
-def of_identification(path: Path) -> Knowledge:
+def of_identification(path: Path, names: Sequence[str] = COEFFICIENTS) -> Knowledge:
     """Knowledge by an ``identification.json``; errors are as stated where it does not tell them.
+
+    ``names`` are those of the parameters of the boards' law.
 
     Raises
     ------
@@ -67,7 +69,7 @@ def of_identification(path: Path) -> Knowledge:
     """
     known: Any = load_json(path, TrawlError)
     try:
-        found = {name: float(known['coefficients'][name]['value']) for name in COEFFICIENTS}
+        found = {name: float(known['coefficients'][name]['value']) for name in names}
         values = validated(CoefficientsRecord, found, path, TrawlError).array()
         covariance = np.array(known['covariance'], dtype=float)[: len(values), : len(values)]
         if not np.abs(covariance).max() <= MAX_VARIANCE:

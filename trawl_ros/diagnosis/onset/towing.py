@@ -91,7 +91,8 @@ class WatchedGear:
     def parameters(self) -> MotionParameters:
         """Parameters of the derivatives in time."""
         errors = tuple(error.name for error in INPUT_ERRORS)
-        return MotionParameters(effects=self.moving, inputs=errors)
+        board = self.model.board.law.parameters.names
+        return MotionParameters(coefficients=board, effects=self.moving, inputs=errors)
 
     def counted(self, at: Situation) -> BoolArray:
         """Flags (p,) of the values that change what counters show."""

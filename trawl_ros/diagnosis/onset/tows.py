@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trawl_ros.core.arrays import Slice
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.onset.history import CourseKeeper, WatchedCourse
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
@@ -15,7 +16,6 @@ from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.windows.noise_density import noise_densities
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.records.samples import Sample
 
 LESS_KNOWN = 2.0
@@ -69,11 +69,10 @@ class OnsetsInTow:
         return (found.onset_ns - self.start_ns) / 60e9
 
 
-def by_estimate(estimate: Estimate, windows: Sequence[SteadyWindow]) -> Knowledge:
-    """Knowledge by an estimate from steady windows of the same tows."""
-    own = slice(0, len(COEFFICIENTS))
-    covariance = LESS_KNOWN**2 * np.array(estimate.covariance)[own, own]
-    return Knowledge(estimate.values[own], covariance, noise_densities(windows))
+def by_estimate(estimate: Estimate, board: Slice, windows: Sequence[SteadyWindow]) -> Knowledge:
+    """Knowledge by the board's slice of an estimate from steady windows of the same tows."""
+    covariance = LESS_KNOWN**2 * np.array(estimate.covariance)[board, board]
+    return Knowledge(estimate.values[board], covariance, noise_densities(windows))
 
 
 def onsets_in(

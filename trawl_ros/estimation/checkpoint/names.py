@@ -56,6 +56,7 @@ FIELDS: Mapping[str, str] = MappingProxyType(
 
 ADDED: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
+        'Estimate': {'names': {'number': -6, 'tuple': list(COEFFICIENTS)}},
         'SteadyWindow': {'seabed': None},
         'SteadyWindowFinder': {
             '_sounder': {
@@ -66,8 +67,8 @@ ADDED: Mapping[str, Mapping[str, Any]] = MappingProxyType(
         },
     }
 )
-"""Attributes, packed, of what was not known of the water's depth. No packer gives a negative
-number."""
+"""Attributes, packed, that classes had not: all boards followed eq. 14, and the water's depth was
+not known. No packer gives a negative number."""
 
 
 def present(name: str, has: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]]:

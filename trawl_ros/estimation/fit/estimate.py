@@ -11,7 +11,6 @@ from scipy.special import stdtrit
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.least_squares.information import LEAST_PRECISION
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 DETERMINED_FRACTION = 0.2
 DETERMINED_SHRINK = 0.5
@@ -25,7 +24,7 @@ UNKNOWN_SINGULAR_SHARE = 1e-7
 class Combination:
     """Combination of coefficients that the data do not determine.
 
-    ``names`` have the largest part in it; ``weights`` (12,) is its unit vector in units of
+    ``names`` have the largest part in it; ``weights`` (q,) is its unit vector in units of
     the prior's std, and ``std`` what the data alone know of it in these units (1 = as much
     as was known before).
     """
@@ -86,8 +85,8 @@ class NetFactor:
 class Posterior:
     """Posterior of the coefficients from prior and data.
 
-    ``covariance`` (12, 12); ``singular`` and ``directions`` of the data's sensitivities scaled
-    by the prior's std, in descending order; ``root`` (12, 12) times its transpose is the
+    ``covariance`` (q, q); ``singular`` and ``directions`` of the data's sensitivities scaled
+    by the prior's std, in descending order; ``root`` (q, q) times its transpose is the
     covariance in prior std.
     """
 
@@ -107,21 +106,23 @@ class Posterior:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Posterior estimate of the coefficients (12,), in the order of eq. 36.
+    """Posterior estimate of the q coefficients, in the order of the boards' law.
 
     Attributes
     ----------
+    names
+        Names (q,) of the coefficients.
     revision
         Counts estimates since the last reset.
     stamp
         End (ns) of the newest window.
     values, std, covariance
-        Estimate (12,), standard deviations (12,), covariance (12, 12). Noise as found and
+        Estimate (q,), standard deviations (q,), covariance (q, q). Noise as found and
         ``birge_ratio`` are in them.
     low, high
-        95 % interval (12,) by Student's t, cut at the bounds.
+        95 % interval (q,) by Student's t, cut at the bounds.
     shrink
-        1 − std/prior std (12,): 0 where the data said nothing, 1 where they said all.
+        1 − std/prior std (q,): 0 where the data said nothing, 1 where they said all.
     determined
         True if the data determine each coefficient: std at most 20 % of the value or of the
         prior's std, whichever is more, and at most half the prior's std, so that a narrow
@@ -152,6 +153,7 @@ class Estimate:
         True if the iteration has come to rest, and the criterion.
     """
 
+    names: tuple[str, ...]
     revision: int
     stamp: int
     windows: int
@@ -188,9 +190,9 @@ def posterior_of(information: FloatArray, prior_std: FloatArray, prior_weight: f
     Parameters
     ----------
     information
-        Of the data on the coefficients (12, 12), in units of ``prior_std``.
+        Of the data on the coefficients (q, q), in units of ``prior_std``.
     prior_std
-        Standard deviations (12,) of the prior.
+        Standard deviations (q,) of the prior.
     prior_weight
         1 for the prior as stated, 0 for none.
     """
@@ -206,9 +208,7 @@ def posterior_of(information: FloatArray, prior_std: FloatArray, prior_weight: f
     )
 
 
-def undetermined(
-    knowledge: Posterior, names: Sequence[str] = COEFFICIENTS
-) -> tuple[Combination, ...]:
+def undetermined(knowledge: Posterior, names: Sequence[str]) -> tuple[Combination, ...]:
     """Directions that the data know less well than the prior, rotated by varimax."""
     weak = knowledge.singular < 1.0
     if not np.any(weak):
@@ -227,7 +227,7 @@ def undetermined(
 
 
 def _varimax(basis: FloatArray) -> FloatArray:
-    """Rotate the columns (12, k) of a basis so that each rests on few coefficients.
+    """Rotate the columns (q, k) of a basis so that each rests on few coefficients.
 
     Singular vectors of like singular values are arbitrary mixtures; this makes them readable.
     """
@@ -270,6 +270,6 @@ def interval(
     confidence: float,
     prior: ParameterVector,
 ) -> tuple[FloatArray, FloatArray]:
-    """Student's interval (12,), (12,) around the values, cut at the bounds."""
+    """Student's interval (q,), (q,) around the values, cut at the bounds."""
     half = float(stdtrit(degrees_of_freedom, 0.5 + 0.5 * confidence)) * std
     return np.maximum(values - half, prior.low), np.minimum(values + half, prior.high)

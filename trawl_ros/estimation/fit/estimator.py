@@ -50,7 +50,7 @@ class Progress:
 
 
 class Estimator:
-    """Estimator of the twelve coefficients from steady windows.
+    """Estimator of the coefficients from steady windows.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class Estimator:
 
     @property
     def coefficients(self) -> FloatArray:
-        """Present coefficients (12,)."""
+        """Present coefficients (q,)."""
         return self._fit.coefficients
 
     @property

@@ -38,7 +38,7 @@ Known = tuple[tuple[Linearised, ...], EstimatorOptions, tuple[TowErrors, ...]]
 
 @dataclass(frozen=True)
 class Fit:
-    """Linearised windows, coefficients (12,), and factors on the stated noise by group.
+    """Linearised windows, coefficients (q,), and factors on the stated noise by group.
 
     What ``prior`` has behind the coefficients of the boards stands behind them in ``coefficients``
     and in the windows' ``by_coefficients``. ``weights`` of the readings are found where none are
@@ -103,7 +103,7 @@ class Fit:
 
     @cached_property
     def jacobian(self) -> FloatArray:
-        """Sensitivities (windows, k, 12) per prior std."""
+        """Sensitivities (windows, k, q) per prior std."""
         std = self.prior.std
         rows = [in_all_channels(linear, linear.by_coefficients * std) for linear in self.windows]
         return np.array(rows).reshape(-1, len(GROUP_OF), len(self.prior))
@@ -138,7 +138,7 @@ class Fit:
         return float(0.5 * self.options.prior_weight * away @ away)
 
     def linear_problem(self, low: FloatArray, high: FloatArray) -> LinearProblem:
-        """Linear problem of all windows, in prior std, the coefficients within bounds (12,).
+        """Linear problem of all windows, in prior std, the coefficients within bounds (q,).
 
         Its blocks are the tows: coefficients and the model's errors are shared, the errors of
         calibration are their own.
@@ -169,7 +169,7 @@ class Fit:
 
     @property
     def std(self) -> FloatArray:
-        """Standard deviations (12,) of the coefficients."""
+        """Standard deviations (q,) of the coefficients."""
         return np.sqrt(np.diag(self.posterior.covariance))
 
     @cached_property

@@ -36,7 +36,7 @@ def innovation_of(linear: Linearised, fit: Fit, known: FloatArray) -> Innovation
         The window, solved at the coefficients of the fit.
     fit
         Of the windows before it.
-    known : (12, 12) array
+    known : (q, q) array
         Covariance of the coefficients before it.
     """
     (errors,) = replace(fit, windows=(linear,)).errors
@@ -65,6 +65,7 @@ def posterior_estimate(
     degrees_of_freedom = fit.degrees_of_freedom + options.stated_noise_readings
     low, high = interval(values, std, degrees_of_freedom, options.confidence, prior)
     return Estimate(
+        names=prior.names,
         revision=revision,
         stamp=max(linear.window.end_ns for linear in fit.windows),
         windows=len(fit.windows),

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""The six laws of eq. 14 at the working angles: value and slope of each."""
+"""The six laws of a board at its working angles: value and slope of each."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -9,11 +9,15 @@ from typing import Literal
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray
-from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.model.board_laws import BoardLaw
+from trawl_ros.model.numerics import STEP
 from trawl_ros.records.observables import Observables
 
 RANGE = np.radians(15.0)
 """Width (rad) of the working range, from 15 to 30° of attack; slip is given the same."""
+
+DIFFERENCE = np.radians(0.1)
+"""Width (rad) of the central differences of slopes."""
 
 WELL_KNOWN = 0.2
 """Part of what its law spans below which the std of a quantity counts as well known."""
@@ -21,27 +25,20 @@ WELL_KNOWN = 0.2
 
 @dataclass(frozen=True)
 class Law:
-    """Linear law of eq. 14: its quantity, its symbol, coefficients and angle."""
+    """One of the six laws of a board: its quantity, its symbol, and the angle of its slope."""
 
     name: str
     symbol: str
-    slope: str
-    constant: str
     angle: Literal['attack', 'slip']
-
-    @property
-    def columns(self) -> list[int]:
-        """Indices of slope and constant among the coefficients."""
-        return [COEFFICIENTS.index(self.slope), COEFFICIENTS.index(self.constant)]
 
 
 LAWS = (
-    Law('drag', 'C_x^F', 'a1', 'c1', 'attack'),
-    Law('lift', 'C_y^F', 'a2', 'c2', 'attack'),
-    Law('force along the span', 'C_z^F', 'b3', 'c3', 'slip'),
-    Law('roll moment', 'C_x^M', 'a4', 'c4', 'attack'),
-    Law('pitch moment', 'C_y^M', 'b5', 'c5', 'slip'),
-    Law('yaw moment', 'C_z^M', 'a6', 'c6', 'attack'),
+    Law('drag', 'C_x^F', 'attack'),
+    Law('lift', 'C_y^F', 'attack'),
+    Law('force along the span', 'C_z^F', 'slip'),
+    Law('roll moment', 'C_x^M', 'attack'),
+    Law('pitch moment', 'C_y^M', 'slip'),
+    Law('yaw moment', 'C_z^M', 'attack'),
 )
 """In the order of eq. 36."""
 
@@ -103,53 +100,68 @@ def working_angles(observables: Iterable[Observables]) -> WorkingAngles:
     return WorkingAngles(float(attack), float(slip))
 
 
-def law_rows(angles: WorkingAngles) -> FloatArray:
-    """Linear map (12, 12) from the coefficients to the twelve quantities."""
-    values, slopes = np.zeros((2, len(LAWS), len(COEFFICIENTS)))
-    for row, law in enumerate(LAWS):
-        angle = angles.attack if law.angle == 'attack' else angles.slip
-        values[row, law.columns] = angle, 1.0
-        slopes[row, law.columns[0]] = RANGE
-    return np.vstack((values, slopes))
+def law_values(law: BoardLaw, coefficients: FloatArray, angles: WorkingAngles) -> FloatArray:
+    """Values (12,) of the twelve quantities of an upright board, whose coefficients are (q,)."""
+    half = 0.5 * DIFFERENCE
+    attack = angles.attack + half * np.array([0.0, 1.0, -1.0, 0.0, 0.0])
+    slip = angles.slip + half * np.array([0.0, 0.0, 0.0, 1.0, -1.0])
+    here, *sides = law(coefficients, attack, slip)
+    by_attack, by_slip = sides[0] - sides[1], sides[2] - sides[3]
+    change = np.where([own.angle == 'attack' for own in LAWS], by_attack, by_slip)
+    return np.concatenate((here, RANGE / DIFFERENCE * change))
 
 
-def law_spans(coefficients: FloatArray, std: FloatArray | None = None) -> FloatArray:
+def law_rows(law: BoardLaw, coefficients: FloatArray, angles: WorkingAngles) -> FloatArray:
+    """Derivatives (12, q) of the twelve quantities by the coefficients (q,)."""
+    steps = coefficients + 1j * STEP * np.eye(len(coefficients))
+    return np.stack([law_values(law, step, angles) for step in steps], axis=1).imag / STEP
+
+
+def law_spans(
+    law: BoardLaw,
+    coefficients: FloatArray,
+    angles: WorkingAngles,
+    std: FloatArray | None = None,
+) -> FloatArray:
     """Span (12,) of each quantity's law over 15° of its angle.
 
     Parameters
     ----------
-    coefficients
-        Of the board, (12,).
+    law, coefficients
+        Of the board; (q,).
+    angles
+        Mean working angles of the boards.
     std
-        Their std (12,): then the root mean square of what the laws may span, so
+        Std (q,) of the coefficients: then the root mean square of what the laws may span, so
         that a law whose slope is not known yet has a span too.
     """
     variance = np.zeros(len(coefficients)) if std is None else std**2
-    slopes = [law.columns[0] for law in LAWS]
-    span = RANGE * np.sqrt(coefficients[slopes] ** 2 + variance[slopes])
-    return np.concatenate((span, span))
+    change = law_values(law, coefficients, angles)[len(LAWS) :]
+    rows = law_rows(law, coefficients, angles)[len(LAWS) :]
+    return np.tile(np.sqrt(change**2 + rows**2 @ variance), 2)
 
 
 def law_quantities(
+    law: BoardLaw,
     coefficients: FloatArray,
     covariance: FloatArray,
     angles: WorkingAngles,
     span: FloatArray | None = None,
 ) -> LawQuantities:
-    """Value and slope of each law, and their std.
+    """Value and slope of each law, and their std to first order.
 
     Parameters
     ----------
-    coefficients, covariance
-        Of the board, (12,) and (12, 12), in the order of eq. 36.
+    law, coefficients, covariance
+        Of the board; (q,) and (q, q).
     angles
         Mean working angles of the boards.
     span
         From `law_spans`, where it is not to be that of these coefficients.
     """
-    rows = law_rows(angles)
+    rows = law_rows(law, coefficients, angles)
     return LawQuantities(
-        values=rows @ coefficients,
+        values=law_values(law, coefficients, angles),
         sd=np.sqrt(np.einsum('ij,jk,ik->i', rows, covariance, rows)),
-        span=law_spans(coefficients) if span is None else span,
+        span=law_spans(law, coefficients, angles) if span is None else span,
     )

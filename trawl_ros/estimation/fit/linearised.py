@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 class Linearised:
     """Linearisation of a window where it was solved.
 
-    It was solved at coefficients ``at`` (12,), ``inputs`` (3,) and ``net`` (2,); the last are
+    It was solved at coefficients ``at`` (q,), ``inputs`` (3,) and ``net`` (2,); the last are
     factors on drag and weight in water of the net.
     ``channels`` are the n measured channels the window has; ``measured``, ``values`` (n,),
-    ``by_coefficients`` (n, 12, or more where more is estimated along), ``by_inputs`` (n, 3) and
+    ``by_coefficients`` (n, q, or more where more is estimated along), ``by_inputs`` (n, 3) and
     ``by_net`` (n, 2; 0 where the net is held) in SI; ``state`` starts the solver. The values are
     those of the measured inputs and of the net in the gear file, to first order: warp lengths are
     measured with errors that differ between the sides, and a gear that is towed askew is not linear
@@ -79,7 +79,7 @@ class Linearised:
         Parameters
         ----------
         coefficients, inputs, net
-            Other point: (12,), warp lengths and speed (3,), factors on the net's drag and weight
+            Other point: (q,), warp lengths and speed (3,), factors on the net's drag and weight
             (2,) or None where these are held.
         threshold
             Standard deviations of a window's mean.
@@ -115,7 +115,7 @@ def linearise(
     window
         Steady window with the measured means.
     coefficients
-        Point of linearisation (12,).
+        Point of linearisation (q,).
     starts
         Start states, each tried in turn; None is a cold start.
     inputs

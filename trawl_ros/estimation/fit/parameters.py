@@ -11,7 +11,6 @@ import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
 from trawl_ros.core.errors import GearError
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 Kind = Literal['coefficients', 'effect', 'pattern', 'calibration', 'model', 'net']
 
@@ -43,10 +42,6 @@ class ParameterGroup:
         return len(self.names)
 
 
-BOARD = ParameterGroup('coefficients', COEFFICIENTS, ('',) * len(COEFFICIENTS))
-"""The coefficients of eq. 14, in the order of eq. 36."""
-
-
 @dataclass(frozen=True)
 class ParameterVector:
     """Parameter vector of n values: groups one behind the other, with prior and bounds.
@@ -71,7 +66,7 @@ class ParameterVector:
     std: FloatArray
     low: FloatArray
     high: FloatArray
-    groups: tuple[ParameterGroup, ...] = (BOARD,)
+    groups: tuple[ParameterGroup, ...]
 
     def __post_init__(self) -> None:
         for field in ('start', 'std', 'low', 'high'):

@@ -21,7 +21,7 @@ class SteadyPrediction(Protocol):
 
     @property
     def jacobian(self) -> FloatArray:
-        """Derivatives (n, 15) of the observables by coefficients, both warp lengths and speed."""
+        """Derivatives (n, q + 3) of the observables by coefficients, warp lengths and speed."""
         ...
 
     @property
@@ -46,7 +46,7 @@ class SteadyPredictor(Protocol):
         speed: float,
         start: 'Equilibrium | None' = None,
     ) -> SteadyPrediction:
-        """Solve for coefficients (12,), warp lengths (m) and speed (m/s).
+        """Solve for coefficients (q,), warp lengths (m) and speed (m/s).
 
         Raises
         ------

@@ -41,7 +41,7 @@ NO_STEADY_STATE = 'every further step leads to a gear without a steady state'
 
 
 def most_likely(fit: Fit, low: FloatArray, high: FloatArray) -> Fit:
-    """Return the fit of least cost within bounds (12,), to first order around its windows.
+    """Return the fit of least cost within bounds (q,), to first order around its windows.
 
     Coefficients, noise and weights of the result belong together.
     """

@@ -34,7 +34,7 @@ def fit_motion(
     gear, tows
         The gear that is towed, and its records.
     prior
-        Of the twelve coefficients.
+        Of the coefficients.
     options
         Of the fit.
     start

@@ -59,11 +59,11 @@ class MotionFit:
 
     Attributes
     ----------
-    values : (12,) array
+    values : (q,) array
         Coefficients.
     matrix : (s, s) array
         Information of the data on the shared parameters, in prior std.
-    covariance : (12, 12) array
+    covariance : (q, q) array
         Posterior covariance of the coefficients.
     parameters : tuple of (p,) arrays
         Of each tow, in units of their prior std.

@@ -26,7 +26,7 @@ FOLDS = 5
 """Parts into which the states of a single tow are dealt, as by the hold-out of the windows."""
 
 Predict = Callable[[FloatArray, Sequence[SteadyWindow], FloatArray | None, FloatArray], FloatArray]
-"""Channels of eq. 35 (n, 4) in windows, by coefficients (12,), factors (2,) on drag and weight
+"""Channels of eq. 35 (n, 4) in windows, by coefficients (q,), factors (2,) on drag and weight
 of the net, None where these are held, and warp lengths (m) and speed (m/s) (n, 3)."""
 
 

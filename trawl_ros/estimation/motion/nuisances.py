@@ -21,7 +21,6 @@ from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
 from trawl_ros.records.channels import CHANNELS
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.motion.parameters import NET
 
 START_STD_M = 10.0
@@ -39,6 +38,8 @@ class TowLayout:
 
     Attributes
     ----------
+    coefficients
+        Number of coefficients of the boards.
     starts
         Number of slow motions with which its parts may begin.
     knots
@@ -51,6 +52,7 @@ class TowLayout:
         Prior std of the factors on drag and weight of the net; 0 where these are held.
     """
 
+    coefficients: int
     starts: int
     knots: tuple[tuple[str, int], ...]
     channels: tuple[str, ...]
@@ -60,12 +62,12 @@ class TowLayout:
     @property
     def of_coefficients(self) -> Slice:
         """Slice of the boards' coefficients."""
-        return slice(0, len(COEFFICIENTS))
+        return slice(0, self.coefficients)
 
     @property
     def of_added_mass(self) -> Slice:
         """Slice of the boards' added mass."""
-        return slice(len(COEFFICIENTS), len(COEFFICIENTS) + 1)
+        return slice(self.coefficients, self.coefficients + 1)
 
     @property
     def of_net(self) -> Slice:
@@ -129,7 +131,8 @@ class TowLayout:
 def layout_of(tow: MovingTow, gear: TowedGear, model: float) -> TowLayout:
     """Layout of a tow of a gear."""
     knots = tuple((knots.channel, knots.number) for knots in tow.inputs.knots)
-    return TowLayout(tow.starts, knots, tow.channels, model, gear.net_std)
+    number = len(gear.model.coefficients)
+    return TowLayout(number, tow.starts, knots, tow.channels, model, gear.net_std)
 
 
 def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> FloatArray:

@@ -58,27 +58,27 @@ class MotionOutcome:
 
     @property
     def std(self) -> FloatArray:
-        """Posterior std (12,) of the whole tow."""
+        """Posterior std (q,) of the whole tow."""
         return np.sqrt(np.diag(self.fit.covariance))
 
     @property
     def covariance(self) -> FloatArray:
-        """Posterior covariance (12, 12) of the whole tow."""
+        """Posterior covariance (q, q) of the whole tow."""
         return self.fit.covariance
 
     @property
     def low(self) -> FloatArray:
-        """Lower ends (12,) of the 95 % intervals, cut at the bounds."""
+        """Lower ends (q,) of the 95 % intervals, cut at the bounds."""
         return np.maximum(self.fit.values - HALF_95 * self.std, self.prior.low)
 
     @property
     def high(self) -> FloatArray:
-        """Upper ends (12,)."""
+        """Upper ends (q,)."""
         return np.minimum(self.fit.values + HALF_95 * self.std, self.prior.high)
 
     @property
     def ratio(self) -> FloatArray:
-        """Ratio (12,) of the std of the whole tow to that of its windows or of the prior."""
+        """Ratio (q,) of the std of the whole tow to that of its windows or of the prior."""
         before = self.prior.std if self.windows is None else self.windows.std
         return np.asarray(self.std / before, np.float64)
 

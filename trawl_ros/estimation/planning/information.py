@@ -100,7 +100,7 @@ def information_in(fit: Fit) -> FloatArray:
 
 
 def covariance_from(information: FloatArray, prior: ParameterVector) -> FloatArray:
-    """Covariance (12, 12) of the coefficients by an information matrix."""
+    """Covariance (q, q) of the coefficients by an information matrix."""
     root = np.linalg.cholesky(information)
     # The lower right block of the inverse needs the lower right block of the factor alone.
     number = len(prior)
@@ -115,7 +115,7 @@ def fitted_covariance(
     prior: ParameterVector,
     options: EstimatorOptions,
 ) -> FloatArray:
-    """Posterior covariance (12, 12) that the estimator would give with these windows."""
+    """Posterior covariance (q, q) that the estimator would give with these windows."""
     numbered = tuple(
         replace(linear, window=replace(linear.window, index=index))
         for index, linear in enumerate(linearised)

@@ -13,6 +13,7 @@ from trawl_ros.estimation.fit.laws import (
     law_spans,
     working_angles,
 )
+from trawl_ros.model.board_laws import BoardLaw
 
 
 @dataclass(frozen=True)
@@ -23,20 +24,18 @@ class LawQuestion:
     estimate, a law that turns out to have no slope could never be known well.
     """
 
+    law: BoardLaw
     coefficients: FloatArray
     angles: WorkingAngles
     span: FloatArray
 
     @classmethod
-    def of(cls, fit: Fit) -> 'LawQuestion':
-        """Question of a fit with one window at least."""
-        observables = [linear.state.observables for linear in fit.windows]
-        return cls(
-            fit.coefficients,
-            working_angles(observables),
-            law_spans(fit.prior.start, fit.prior.std),
-        )
+    def of(cls, fit: Fit, law: BoardLaw) -> 'LawQuestion':
+        """Question of a fit with one window at least, of boards that follow a law."""
+        angles = working_angles([linear.state.observables for linear in fit.windows])
+        span = law_spans(law, fit.prior.start, angles, fit.prior.std)
+        return cls(law, fit.coefficients, angles, span)
 
     def quantities(self, covariance: FloatArray) -> LawQuantities:
-        """Quantities of the laws with a covariance (12, 12) of the coefficients."""
-        return law_quantities(self.coefficients, covariance, self.angles, self.span)
+        """Quantities of the laws with a covariance (q, q) of the coefficients."""
+        return law_quantities(self.law, self.coefficients, covariance, self.angles, self.span)

@@ -12,7 +12,6 @@ from trawl_ros.estimation.fit.laws import LAWS, QUANTITIES, LawQuantities, law_r
 from trawl_ros.estimation.planning.information import covariance_from, unknowns
 from trawl_ros.estimation.planning.search import Designer
 from trawl_ros.estimation.planning.states import Manoeuvre
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 WITHOUT_END = 1e4
 """Each leg so many times over: what noise is left hides nothing any more."""
@@ -64,7 +63,8 @@ def limits_of(
 
 def _partner(designer: Designer, covariance: FloatArray, index: int) -> str:
     """Name the coefficient of another law whose knowledge would improve a quantity most."""
-    row = law_rows(designer.problem.angles)[index]
-    shared = (covariance @ row) ** 2 / np.diag(covariance)
-    shared[LAWS[index % len(LAWS)].columns] = 0.0
-    return COEFFICIENTS[int(np.argmax(shared))]
+    problem, number = designer.problem, len(LAWS)
+    rows = law_rows(problem.law, problem.coefficients, problem.angles)
+    shared = (covariance @ rows[index]) ** 2 / np.diag(covariance)
+    shared[(rows[index % number :: number] != 0.0).any(axis=0)] = 0.0
+    return problem.prior.names[int(np.argmax(shared))]

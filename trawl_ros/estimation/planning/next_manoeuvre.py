@@ -119,7 +119,7 @@ class Adviser:
         Parameters
         ----------
         coefficients
-            The present estimate (12,). When it has moved too far from where manoeuvres were
+            The present estimate (q,). When it has moved too far from where manoeuvres were
             looked up, all are looked up again, and meanwhile the old ones serve.
         near
             State in which the ship is; by default the middle of the limits.
@@ -209,7 +209,7 @@ class Adviser:
     def _rank(self, fit: Fit, known: _Known) -> tuple[RankedManoeuvre, ...]:
         if not fit.windows or not known:
             return ()
-        question = LawQuestion.of(fit)
+        question = LawQuestion.of(fit, self._predictor.model.board.law)
         now = covariance_from(informed := information_in(fit), fit.prior)
         before, log_before = shortfall(question.quantities(now)), np.linalg.slogdet(now)[1]
         timetable, here = self._timetable(known), manoeuvre_of(fit)
@@ -254,7 +254,7 @@ class Adviser:
         return self._promise(fit, manoeuvre, self._serving())
 
     def _promise(self, fit: Fit, manoeuvre: Manoeuvre, known: _Known) -> Advice:
-        question = LawQuestion.of(fit)
+        question = LawQuestion.of(fit, self._predictor.model.board.law)
         windows = expected_windows(fit, known[manoeuvre], self._windows.max_windows_per_state)
         now = fit.posterior.covariance
         then = replace(fit, windows=(*fit.windows, *windows)).posterior.covariance

@@ -36,6 +36,7 @@ from trawl_ros.estimation.planning.sweep import SweepTrial, best_sweep, paper_no
 from trawl_ros.estimation.planning.windows import TABLE_NOISE
 from trawl_ros.estimation.windows.records import WindowOptions
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import build_board
 
 LEAST_LEGS = 2
 """One steady state cannot tell a law's slope from its value."""
@@ -192,13 +193,14 @@ def problem_for(
     windows: WindowOptions | None = None,
     estimator: EstimatorOptions | None = None,
 ) -> DesignProblem:
-    """Return the design problem for a board (12,) and the manoeuvres explored with it."""
-    prior = board_prior(gear)
+    """Return the design problem for a board (q,) and the manoeuvres explored with it."""
+    prior, law, angles = board_prior(gear), build_board(gear).law, _angles(choice.candidates)
     return DesignProblem(
+        law=law,
         coefficients=np.array(coefficients),
         prior=prior,
-        angles=_angles(choice.candidates),
-        span=law_spans(prior.start, prior.std),
+        angles=angles,
+        span=law_spans(law, prior.start, angles, prior.std),
         estimator=estimator or EstimatorOptions(),
         windows=windows or WindowOptions(),
         vessel=vessel_limits(gear, [candidate.manoeuvre for candidate in choice.candidates]),
@@ -257,10 +259,6 @@ def _as_filed(
     problem: DesignProblem, candidates: Sequence[TowableManoeuvre], gear: GearRecord
 ) -> DesignProblem:
     """The same design problem with the board that the gear file describes."""
-    coefficients = gear.board.coefficients.array()
-    return replace(
-        problem,
-        coefficients=coefficients,
-        angles=_angles(candidates),
-        span=law_spans(coefficients),
-    )
+    coefficients, angles = gear.board.coefficients.array(), _angles(candidates)
+    span = law_spans(problem.law, coefficients, angles)
+    return replace(problem, coefficients=coefficients, angles=angles, span=span)

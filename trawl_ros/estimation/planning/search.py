@@ -34,6 +34,7 @@ from trawl_ros.estimation.planning.information import (
 from trawl_ros.estimation.planning.states import Manoeuvre, TowableManoeuvre
 from trawl_ros.estimation.planning.windows import TABLE_NOISE, imagined_windows
 from trawl_ros.estimation.windows.records import WindowOptions
+from trawl_ros.model.board_laws import BoardLaw
 
 MIN_GAIN = 1e-9
 """Smallest fall of the shortfall, or relative rise of its rate, that counts; less is rounding."""
@@ -59,7 +60,9 @@ class DesignProblem:
 
     Attributes
     ----------
-    coefficients : (12,) array
+    law
+        Law of the boards.
+    coefficients : (q,) array
         Assumed board coefficients.
     prior
         Prior of the coefficients.
@@ -75,6 +78,7 @@ class DesignProblem:
         Time for the trial, min.
     """
 
+    law: BoardLaw
     coefficients: FloatArray
     prior: ParameterVector
     angles: WorkingAngles
@@ -85,8 +89,8 @@ class DesignProblem:
     minutes: float
 
     def quantities(self, covariance: FloatArray) -> LawQuantities:
-        """Return value and slope of the laws for a covariance (12, 12) of the coefficients."""
-        return law_quantities(self.coefficients, covariance, self.angles, self.span)
+        """Return value and slope of the laws for a covariance (q, q) of the coefficients."""
+        return law_quantities(self.law, self.coefficients, covariance, self.angles, self.span)
 
 
 class Designer:
@@ -150,18 +154,18 @@ class Designer:
     def information(self, manoeuvres: Sequence[Manoeuvre], times: float = 1.0) -> FloatArray:
         """Return the information matrix after manoeuvres, each repeated ``times`` times.
 
-        It includes the prior's, and is in units of the prior std. Its last 12 rows belong to the
+        It includes the prior's, and is in units of the prior std. Its last q rows belong to the
         coefficients; those before them belong to errors that all windows share.
         """
         gained = [self._gained[self._number[manoeuvre]] for manoeuvre in manoeuvres]
         return self._before + times * sum(gained)
 
     def covariance(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
-        """Return the posterior covariance (12, 12) of the coefficients after manoeuvres."""
+        """Return the posterior covariance (q, q) of the coefficients after manoeuvres."""
         return covariance_from(self.information(manoeuvres), self.problem.prior)
 
     def fitted(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
-        """Return the posterior covariance (12, 12) that the estimator itself computes.
+        """Return the posterior covariance (q, q) that the estimator itself computes.
 
         It agrees with `covariance`, which is faster and is used in the search.
         """

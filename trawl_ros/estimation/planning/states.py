@@ -145,7 +145,7 @@ class Explorer:
     predictor
         The model of the gear.
     coefficients
-        Of the board, (12,), as they are believed to be.
+        Of the board, (q,), as they are believed to be.
     limits
         Among which manoeuvres one may choose.
     """

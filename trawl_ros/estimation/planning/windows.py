@@ -45,7 +45,7 @@ def imagined_windows(
     candidate
         Manoeuvre with its steady state.
     coefficients
-        Of the board, (12,), as they are believed to be.
+        Of the board, (q,), as they are believed to be.
     state, tow
         Numbers they get.
     number

@@ -61,7 +61,7 @@ def _fit(report: Report) -> list[Drawing]:
 
 
 def _known(report: Report) -> list[Drawing]:
-    return [
+    drawn = [
         Drawing(
             'coefficients',
             'Each coefficient by its departure from the start, in standard deviations of the '
@@ -74,13 +74,17 @@ def _known(report: Report) -> list[Drawing]:
             'prior knew more. Right: which coefficients each direction is made of.',
             spectrum_figure(report), KNOWN,
         ),
-        Drawing(
-            'lift_drag',
-            "Lift and drag of the board over the attack angle, as in the paper's Fig. 5, with "
-            '95 % bands. Shaded: where the boards worked, where that is known.',
-            lift_drag_figure(report), KNOWN,
-        ),
     ]  # fmt: skip
+    if report.law is not None:
+        drawn.append(
+            Drawing(
+                'lift_drag',
+                "Lift and drag of the board over the attack angle, as in the paper's Fig. 5, with "
+                '95 % bands. Shaded: where the boards worked, where that is known.',
+                lift_drag_figure(report), KNOWN,
+            )
+        )  # fmt: skip
+    return drawn
 
 
 def _motion(report: Report) -> list[Drawing]:

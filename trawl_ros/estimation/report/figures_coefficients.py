@@ -9,7 +9,7 @@ from scipy.special import ndtri
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.report.report import Report
-from trawl_ros.records.coefficients import COEFFICIENTS
+from trawl_ros.model.numerics import STEP
 from trawl_ros.report.style import FAINT, MEASURED, MEASURED_TRUTH, PORT, quiet
 
 ATTACK_DEG = np.linspace(0.0, 40.0, 81)
@@ -23,7 +23,7 @@ def coefficients_figure(report: Report) -> Figure:
     figure = Figure(figsize=(9.0, 4.5), layout='constrained')
     axes = figure.subplots()
     estimate, prior = report.estimate, report.prior
-    place = np.arange(len(COEFFICIENTS))
+    place = np.arange(len(estimate.names))
 
     def scaled(values: FloatArray) -> FloatArray:
         return (values - prior.start) / prior.std
@@ -47,7 +47,7 @@ def coefficients_figure(report: Report) -> Figure:
             place, scaled(report.truth), 'D', mfc='none', mew=1.5, color=PORT, zorder=6,
             label='truth',
         )  # fmt: skip
-    axes.set_xticks(place, COEFFICIENTS)
+    axes.set_xticks(place, estimate.names)
     axes.set_ylabel('departure from the start / prior std')
     axes.set_title(f'Board coefficients after {estimate.windows} steady windows')
     quiet(axes)
@@ -59,11 +59,8 @@ def lift_drag_figure(report: Report) -> Figure:
     """Lift and drag coefficient of the board over the attack angle, as the paper's Fig. 5."""
     figure = Figure(figsize=(9.0, 5.0), layout='constrained')
     axes = figure.subplots()
-    for slope, constant, colour, name in (
-        ('a2', 'c2', MEASURED, 'lift $C_l$'),
-        ('a1', 'c1', PORT, 'drag $C_d$'),
-    ):
-        _draw_line(axes, report, (slope, constant), colour, name)
+    for place, colour, name in ((1, MEASURED, 'lift $C_l$'), (0, PORT, 'drag $C_d$')):
+        _draw_curve(axes, report, place, colour, name)
     if report.laws is not None:
         axes.axvspan(*np.degrees(report.laws.attack), color=FAINT, alpha=0.2, lw=0)
     axes.set_xlim(ATTACK_DEG[0], ATTACK_DEG[-1])
@@ -74,24 +71,25 @@ def lift_drag_figure(report: Report) -> Figure:
     return figure
 
 
-def _draw_line(axes: Axes, report: Report, names: tuple[str, str], colour: str, words: str) -> None:
-    """One line a α + c of eq. 14 at start, estimate (with its 95 % band) and truth."""
-    pair = [COEFFICIENTS.index(name) for name in names]
-    basis = np.column_stack((np.radians(ATTACK_DEG), np.ones(len(ATTACK_DEG))))
-    covariance = report.estimate.covariance[np.ix_(pair, pair)]
-    middle = basis @ report.estimate.values[pair]
-    half = SHADED * np.sqrt(np.sum(basis @ covariance * basis, axis=1))
+def _draw_curve(axes: Axes, report: Report, place: int, colour: str, words: str) -> None:
+    """Coefficient of the law at start, estimate (with its 95 % band) and truth."""
+    law, values, covariance = report.law, report.estimate.values, report.estimate.covariance
+    assert law is not None
+    attack = np.radians(ATTACK_DEG)
+
+    def curve(at: FloatArray) -> FloatArray:
+        return law(at, attack, 0.0)[:, place]
+
+    steps = values + 1j * STEP * np.eye(len(values))
+    slopes = np.stack([curve(step) for step in steps], axis=1).imag / STEP
+    middle, half = curve(values), SHADED * np.sqrt(np.sum(slopes @ covariance * slopes, axis=1))
     axes.plot(ATTACK_DEG, middle, color=colour, lw=2, label=f'{words}, estimate')
     axes.fill_between(ATTACK_DEG, middle - half, middle + half, color=colour, alpha=0.18, lw=0)
-    axes.plot(
-        ATTACK_DEG, basis @ report.prior.start[pair], '--', color=colour, lw=1,
-        label=f'{words}, start',
-    )  # fmt: skip
+    start = curve(report.prior.start)
+    axes.plot(ATTACK_DEG, start, '--', color=colour, lw=1, label=f'{words}, start')
     if report.truth is not None:
-        axes.plot(
-            ATTACK_DEG, basis @ report.truth[pair], ':', color=MEASURED_TRUTH, lw=2,
-            label=f'{words}, truth',
-        )  # fmt: skip
+        truth = curve(report.truth)
+        axes.plot(ATTACK_DEG, truth, ':', color=MEASURED_TRUTH, lw=2, label=f'{words}, truth')
 
 
 def spectrum_figure(report: Report) -> Figure:
@@ -119,7 +117,7 @@ def spectrum_figure(report: Report) -> Figure:
     )
     quiet(bars)
     image = made_of.imshow(spectrum.directions**2, cmap='Blues', vmin=0.0, vmax=1.0, aspect='auto')
-    made_of.set_xticks(np.arange(len(COEFFICIENTS)), COEFFICIENTS)
+    made_of.set_xticks(np.arange(len(spectrum.names)), spectrum.names)
     made_of.set_yticks(rows, [f'{value:.2g}' for value in spectrum.singular])
     for row in rows[weak]:
         made_of.get_yticklabels()[row].set_color(PORT)

@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.objective import objective
 from trawl_ros.estimation.report.report import Report
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report.style import FAINT, MEASURED, MEASURED_TRUTH, PORT, SECOND, quiet
 
 
@@ -53,8 +52,9 @@ def convergence_figure(report: Report) -> Figure:
     estimates = [event.estimate for event in report.course]
     tow = np.array([event.window.tow for event in report.course])
     begins = number[1:][np.diff(tow) > 0] - 0.5
-    panels = figure.subplots(3, 4, sharex=True)
-    for i, axes in enumerate(panels.flat):
+    names = report.estimate.names
+    panels = figure.subplots(-(-len(names) // 4), 4, sharex=True)
+    for i, (name, axes) in enumerate(zip(names, panels.flat, strict=False)):
         start, std = report.prior.start[i], report.prior.std[i]
         axes.axhspan(start - 2.0 * std, start + 2.0 * std, color=FAINT, alpha=0.2, lw=0)
         axes.fill_between(
@@ -76,7 +76,7 @@ def convergence_figure(report: Report) -> Figure:
             axes.axhline(report.truth[i], color=PORT, ls=':', lw=1.5)
         for place in begins:
             axes.axvline(place, color=SECOND, lw=0.8)
-        axes.set_title(COEFFICIENTS[i], fontsize='medium')
+        axes.set_title(name, fontsize='medium')
         quiet(axes)
     for axes in panels[-1]:
         axes.set_xlabel('windows')

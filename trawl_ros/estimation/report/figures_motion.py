@@ -7,7 +7,6 @@ from matplotlib.figure import Figure
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.motion.outcome import HALF_95, MotionOutcome
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report.style import FAINT, MEASURED, PORT, SECOND, quiet
 
 
@@ -15,7 +14,7 @@ def motion_figure(motion: MotionOutcome, truth: FloatArray | None) -> Figure:
     """Both estimates with their intervals in prior std, and their std over that of the prior."""
     figure = Figure(figsize=(10.0, 6.0), layout='constrained')
     estimates, shares = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
-    place, prior = np.arange(len(COEFFICIENTS)), motion.prior
+    place, prior = np.arange(len(motion.prior)), motion.prior
     assert motion.windows is not None
     both = (
         ('steady windows', motion.windows.values, motion.windows.std, SECOND, -0.15),
@@ -35,7 +34,7 @@ def motion_figure(motion: MotionOutcome, truth: FloatArray | None) -> Figure:
     estimates.set_ylabel('departure from the start / prior std')
     shares.axhline(1.0, color=FAINT, lw=1.0, ls='--')
     shares.set_ylabel("std / prior's std")
-    shares.set_xticks(place, COEFFICIENTS)
+    shares.set_xticks(place, prior.names)
     means = motion.geometric_means
     shares.set_title(
         f'geometric mean {means["windows"]:.2f} by the windows, {means["whole"]:.2f} by all of '

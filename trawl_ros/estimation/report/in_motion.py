@@ -14,10 +14,15 @@ from trawl_ros.estimation.report.holdout import HeldOut
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.spectrum import spectrum
 from trawl_ros.estimation.windows.records import REASONS, Rejections
+from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.gear_model import build_board
 
 
 def report_in_motion(
-    motion: MotionOutcome, rejections: Sequence[Rejections], truth: FloatArray | None = None
+    motion: MotionOutcome,
+    rejections: Sequence[Rejections],
+    gear: GearRecord,
+    truth: FloatArray | None = None,
 ) -> Report:
     """Compute the report of tows that were learned from in motion alone.
 
@@ -27,8 +32,10 @@ def report_in_motion(
         Outcome of their fit.
     rejections
         Of the recordings, none of which has a window.
+    gear
+        Gear of the boards.
     truth
-        True coefficients (12,), where known.
+        True coefficients (q,), where known.
     """
     every, prior, none = Rejections(), motion.prior, stack(())
     for rejected in rejections:
@@ -54,6 +61,7 @@ def report_in_motion(
         course=(),
         history=(),
         spectrum=spectrum(estimate.covariance, prior, 1.0),
+        law=build_board(gear).law,
         laws=None,
         motion=motion,
     )
@@ -64,6 +72,7 @@ def estimate_in_motion(motion: MotionOutcome) -> Estimate:
     fit, prior, std = motion.fit, motion.prior, motion.std
     ends = [linear.tow.start_ns + int(1e9 * linear.tow.middles[-1]) for linear in fit.linear]
     return Estimate(
+        names=prior.names,
         revision=1,
         stamp=max(ends),
         windows=0,

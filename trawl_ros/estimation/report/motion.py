@@ -13,7 +13,6 @@ from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.report.net import net_lines, net_result
 from trawl_ros.estimation.report.report import Report
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 MAX_NAMED_STRETCHES = 3
 """Largest number of badly fitting stretches that the sentence about them names."""
@@ -26,7 +25,7 @@ def coefficient_rows(motion: MotionOutcome, truth: FloatArray | None) -> list[di
     ----------
     motion
         Outcome of the fit of the whole tow.
-    truth : (12,) array, optional
+    truth : (q,) array, optional
         True coefficients, if the tow is simulated.
 
     Returns
@@ -37,7 +36,7 @@ def coefficient_rows(motion: MotionOutcome, truth: FloatArray | None) -> list[di
         entries are None if there is no steady window.
     """
     windows, rows = motion.windows, []
-    for i, name in enumerate(COEFFICIENTS):
+    for i, name in enumerate(motion.prior.names):
         row: dict[str, object] = {
             'name': name,
             'prior_std': float(motion.prior.std[i]),

@@ -18,7 +18,6 @@ from trawl_ros.estimation.report.result import result
 from trawl_ros.estimation.report.sensors import sensor_cells, sensor_headings
 from trawl_ros.estimation.report.verdict import LARGEST_TEST_RATIO, verdict
 from trawl_ros.estimation.windows.records import REASONS
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.report.pictures import Picture, by_section, draw, embedded
 from trawl_ros.report.rendering import page as filled
 
@@ -88,7 +87,7 @@ def report_page(report: Report, pictures: Iterable[Picture], advice: Sequence[st
 
 def _coefficients(report: Report) -> list[dict[str, object]]:
     estimate, rows = report.estimate, []
-    for i, name in enumerate(COEFFICIENTS):
+    for i, name in enumerate(estimate.names):
         row: dict[str, object] = {
             'name': name,
             'start': report.prior.start[i],

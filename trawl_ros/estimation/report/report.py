@@ -35,6 +35,8 @@ from trawl_ros.estimation.report.sensors import SensorComparison, compare_sensor
 from trawl_ros.estimation.report.spectrum import Spectrum, spectrum
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.gear.records import GearRecord
+from trawl_ros.model.board_laws import BoardLaw
+from trawl_ros.model.gear_model import build_board
 from trawl_ros.records.channels import INPUTS
 
 
@@ -76,7 +78,7 @@ class Report:
         End and start of the fit.
     prior_weight
         1 where the prior was used, 0 where the data alone decided.
-    truth : (12,) array or None
+    truth : (q,) array or None
         The coefficients that made the data, where they are known.
     rejected, found
         Reason → count, and → what was found last.
@@ -101,8 +103,10 @@ class Report:
         The steps of the iteration.
     spectrum
         Information of the data by direction.
+    law
+        Law of the boards; None where the gear is not at hand, or has no boards.
     laws
-        Quantities of the boards' laws; None where the gear is not at hand, or has no boards.
+        Quantities of this law; None where the gear is not at hand, or has no boards.
     paired
         True for a gear without boards, whose coefficients do nothing.
     motion
@@ -138,6 +142,7 @@ class Report:
     course: tuple[WindowUsed, ...]
     history: tuple[Progress, ...]
     spectrum: Spectrum
+    law: BoardLaw | None
     laws: KnownLaws | None
     paired: bool = False
     motion: MotionOutcome | None = None
@@ -208,7 +213,7 @@ def report(
     identification
         After its `finish`.
     truth
-        True coefficients (12,), where known.
+        True coefficients (q,), where known.
     folds
         Of the hold-out within a single tow.
     tows
@@ -231,8 +236,9 @@ def report(
     own = [linear.state for linear in estimator.fit.windows]
     at_end = solve_windows(estimator, estimate.values, estimator.fit.net, own)
     at_start = solve_windows(estimator, estimator.prior.start)
-    cases = {'start': at_start, 'refitted': at_end}
+    cases, law = {'start': at_start, 'refitted': at_end}, None
     if gear is not None and gear.pair is None:
+        law = build_board(gear).law
         written = gear.board.coefficients.array()
         known = np.array_equal(written, estimator.prior.start)
         by_gear = at_start if known else solve_windows(estimator, written)
@@ -256,23 +262,26 @@ def report(
         course=tuple(identification.course),
         history=tuple(estimator.history),
         spectrum=spectrum(estimate.covariance, estimator.prior, weight),
-        laws=None if gear is None or gear.pair is not None else _laws(at_end, estimate),
+        law=law,
+        laws=None if law is None else _laws(law, at_end, estimate),
         paired=gear is not None and gear.pair is not None,
         sensors=compare_sensors(cases),
     )
 
 
-def _laws(linearised: Sequence[Linearised | None], estimate: Estimate) -> KnownLaws | None:
+def _laws(
+    law: BoardLaw, linearised: Sequence[Linearised | None], estimate: Estimate
+) -> KnownLaws | None:
     observables = [linear.state.observables for linear in linearised if linear is not None]
     if not observables:
         return None
     attack = [0.5 * (observed.port_attack + observed.starboard_attack) for observed in observables]
     angles = working_angles(observables)
-    span = law_spans(estimate.values, estimate.std)
+    span = law_spans(law, estimate.values, angles, estimate.std)
     return KnownLaws(
         attack=(min(attack), max(attack)),
         angles=angles,
-        quantities=law_quantities(estimate.values, estimate.covariance, angles, span),
+        quantities=law_quantities(law, estimate.values, estimate.covariance, angles, span),
     )
 
 

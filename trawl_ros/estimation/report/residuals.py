@@ -89,7 +89,7 @@ def solve_windows(
     estimator
         With the windows of the fit.
     coefficients
-        Shape (12,).
+        Shape (q,).
     net
         Factors (2,) on drag and weight of the net; as in the gear file if None.
     own

@@ -12,7 +12,6 @@ from trawl_ros.estimation.report.net import net_result
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.estimation.windows.noise_density import noise_densities
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 def result(report: Report) -> dict[str, object]:
@@ -33,7 +32,7 @@ def result(report: Report) -> dict[str, object]:
                 'shrink': float(estimate.shrink[i]),
                 'determined': estimate.determined[i],
             }
-            for i, name in enumerate(COEFFICIENTS)
+            for i, name in enumerate(estimate.names)
         },
         'channels': {
             channel.name: {
@@ -54,7 +53,7 @@ def result(report: Report) -> dict[str, object]:
         'weak_combinations': [
             {
                 'names': list(combination.names),
-                'weights': dict(zip(COEFFICIENTS, combination.weights.tolist(), strict=True)),
+                'weights': dict(zip(estimate.names, combination.weights.tolist(), strict=True)),
                 'std': finite(combination.std),
             }
             for combination in estimate.undetermined

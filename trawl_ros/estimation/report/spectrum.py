@@ -9,7 +9,6 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimate import NAMED_SHARE
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 @dataclass(frozen=True)
@@ -18,12 +17,15 @@ class Spectrum:
 
     Attributes
     ----------
-    singular : (12,) array
+    names
+        Names (q,) of the coefficients.
+    singular : (q,) array
         Of the data's whitened sensitivities: 1 where the data know as much as the prior did.
-    directions : (12, 12) array
+    directions : (q, q) array
         A unit vector in each row.
     """
 
+    names: tuple[str, ...]
     singular: FloatArray
     directions: FloatArray
 
@@ -31,8 +33,8 @@ class Spectrum:
         """Names of the coefficients with the largest part in a direction."""
         weights = np.abs(self.directions[row])
         order = np.argsort(-weights)
-        named = [COEFFICIENTS[i] for i in order if weights[i] >= NAMED_SHARE]
-        return ' with '.join(named or [COEFFICIENTS[order[0]]])
+        named = [self.names[i] for i in order if weights[i] >= NAMED_SHARE]
+        return ' with '.join(named or [self.names[order[0]]])
 
 
 def spectrum(covariance: FloatArray, prior: ParameterVector, prior_weight: float) -> Spectrum:
@@ -44,13 +46,13 @@ def spectrum(covariance: FloatArray, prior: ParameterVector, prior_weight: float
     Parameters
     ----------
     covariance
-        Of the coefficients (12, 12).
+        Of the coefficients (q, q).
     prior
-        Prior with the std (12,) that is the scale.
+        Prior with the std (q,) that is the scale.
     prior_weight
         w: 1 where the prior was used, 0 where not.
     """
     scaled = covariance / np.outer(prior.std, prior.std)
     variances, vectors = np.linalg.eigh(scaled)
     singular = np.sqrt(np.maximum(1.0 / variances - prior_weight, 0.0))
-    return Spectrum(singular, vectors.T)
+    return Spectrum(prior.names, singular, vectors.T)

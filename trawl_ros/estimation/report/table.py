@@ -12,7 +12,6 @@ from trawl_ros.estimation.report.page import percent
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.sensors import SensorComparison, sensor_cells, sensor_headings
 from trawl_ros.estimation.report.verdict import verdict
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 
 def coefficient_table(report: Report) -> Table:
@@ -28,7 +27,7 @@ def coefficient_table(report: Report) -> Table:
     for heading in (*headings, 'determined'):
         table.add_column(heading, justify='right')
     estimate = report.estimate
-    for i, name in enumerate(COEFFICIENTS):
+    for i, name in enumerate(estimate.names):
         numbers = [report.prior.start[i], estimate.values[i], estimate.low[i], estimate.high[i]]
         cells = [f'{number:.3f}' for number in numbers]
         if report.truth is not None:

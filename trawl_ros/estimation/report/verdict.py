@@ -12,7 +12,6 @@ from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.net import net_lines
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.residuals import ChannelResiduals
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 LARGEST_TEST_RATIO = 1.0
 """Test ratio above which residuals are beyond what the stated errors allow."""
@@ -94,10 +93,10 @@ def _knowledge(report: Report) -> tuple[str, ...]:
         only = 'The gear has no boards: drag and weight of its net are estimated.'
         return only, *net_lines(report.estimate.net)
     estimate = report.estimate
-    known = [name for name, flag in zip(COEFFICIENTS, estimate.determined, strict=True) if flag]
+    known = [name for name, flag in zip(estimate.names, estimate.determined, strict=True) if flag]
     listed = f': {", ".join(known)}' if known else ''
     sentences = [
-        f'The data determine {len(known)} of the {len(COEFFICIENTS)} coefficients{listed}.'
+        f'The data determine {len(known)} of the {len(estimate.names)} coefficients{listed}.'
     ]
     if estimate.undetermined:
         names = '; '.join(str(combination) for combination in estimate.undetermined)

@@ -16,6 +16,7 @@ from trawl_ros.lab.report.page import Findings
 from trawl_ros.lab.running.timing import Part, shares, timed
 from trawl_ros.model.assembly import linearised
 from trawl_ros.model.gear_model import build_model
+from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.linear.factor import Factor, factorised
 from trawl_ros.solver.motion.course import InputPoint, course_point
 from trawl_ros.solver.motion.parameters import MotionParameters
@@ -29,7 +30,7 @@ STEP_MS = 6.0
 
 EFFECTS = ('board_added_mass', 'counter_scale', 'counter_offset', 'speed_log')
 TWENTY = MotionParameters(
-    coefficients=True, net=True, effects=tuple(catalogue()[name] for name in EFFECTS)
+    coefficients=COEFFICIENTS, net=True, effects=tuple(catalogue()[name] for name in EFFECTS)
 )
 """Twelve coefficients, drag and weight of the net, added mass, errors of counters and log."""
 
@@ -45,7 +46,7 @@ PARTS: dict[str, Part] = {
 }
 """Main functions of a step with derivatives."""
 
-NONE = MotionParameters(coefficients=False)
+NONE = MotionParameters()
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,6 @@ from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.equilibrium import Equilibrium, find_equilibrium
 from trawl_ros.solver.operating_point import OperatingPoint
 from trawl_ros.solver.predict import Prediction, Predictor
-from trawl_ros.solver.sensitivity import PARAMETERS
 from trawl_ros.solver.slow_mode import slow_mode
 
 DIFFERENCE = 3e-4
@@ -71,7 +70,7 @@ class FiniteDifferencePredictor(Counting):
         at = np.array([*coefficients, port_length, starboard_length, speed])
         found = self._solve(at, start)
         values = found.observables.array()
-        jacobian = np.empty((len(OBSERVABLES), len(PARAMETERS)))
+        jacobian = np.empty((len(OBSERVABLES), len(at)))
         for index, step in enumerate(self._steps):
             moved = at.copy()
             moved[index] += step

@@ -238,7 +238,7 @@ def _towed(plant: PlantTow, along: CorrectedInputs, tow: MovingTow, rows: list[i
     none, gear = np.zeros((0, 3)), TowedGear(build_model(plant.gear))
     towed = DifferentiatedTow(
         gear.model,
-        MotionParameters(coefficients=False),
+        MotionParameters(),
         lambda time: replace(along(time), errors=none, error_rates=none),
         gear.with_added_mass(plant.added_mass),
     )

@@ -30,7 +30,6 @@ from trawl_ros.lab.missing_effect.records import (
 )
 from trawl_ros.lab.missing_effect.trials_folder import TrialInput
 from trawl_ros.model.gear_model import build_model
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.predict import Predictor
 
 LEAST_PROBABILITY = 1e-6
@@ -131,7 +130,7 @@ def with_repair(
     made: AnswerRecord, comparison: HoldoutComparison | None, base: Refit, repair: Refit
 ) -> AnswerRecord:
     """Return an answer with held-out errors and board coefficients, without and with a repair."""
-    board = slice(0, len(COEFFICIENTS))
+    board = base.fit.prior.slice_of('coefficients')
     boards = base.estimate.values, repair.estimate.values, repair.estimate.std
     before, after, std = (tuple(map(float, own[board])) for own in boards)
     update: dict[str, object] = {

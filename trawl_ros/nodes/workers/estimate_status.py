@@ -10,7 +10,6 @@ from trawl_ros.messages.diagnostics import ERROR, OK, WARN, Status
 from trawl_ros.messages.estimates import ChannelInnovation
 from trawl_ros.nodes.workers.motion_learner import MotionKnowledge
 from trawl_ros.nodes.workers.outcome import EstimatorOutcome
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 WINDOWS, WHOLE = 'steady windows', 'all of the tow'
 """Words for where an estimate is from."""
@@ -66,7 +65,7 @@ def coefficients_status(outcome: EstimatorOutcome) -> Status:
     for factor in estimate.net:
         values |= {f'net {factor.what}': f'{factor.value:.6g}',
                    f'net {factor.what} std': f'{factor.std:.6g}'}  # fmt: skip
-    for i, coefficient in enumerate(COEFFICIENTS):
+    for i, coefficient in enumerate(estimate.names):
         values |= {
             coefficient: f'{estimate.values[i]:.9g}',
             f'{coefficient} std': f'{estimate.std[i]:.6g}',
@@ -83,7 +82,7 @@ def coefficients_status(outcome: EstimatorOutcome) -> Status:
             by = f'{outcome.motion.minutes:.1f} min of tow'
             values |= {'learned from': WHOLE, 'minutes': f'{outcome.motion.minutes:.1f}'}
     message = (
-        f'{sum(estimate.determined)} of {len(COEFFICIENTS)} coefficients determined by '
+        f'{sum(estimate.determined)} of {len(estimate.names)} coefficients determined by '
         f'{by}; {estimate.reason}'
     )
     return Status(name, level, message, values | rejected)
@@ -144,7 +143,7 @@ def motion_status(motion: MotionKnowledge, windows: Estimate | None) -> Status:
             'towings': str(motion.towings),
             'std over prior': f'{outcome.geometric_means["whole"]:.4f}',
         }
-        for i, coefficient in enumerate(COEFFICIENTS):
+        for i, coefficient in enumerate(outcome.prior.names):
             values[coefficient] = f'{outcome.fit.values[i]:.9g}'
             values[f'{coefficient} std'] = f'{outcome.std[i]:.6g}'
             if windows is not None:

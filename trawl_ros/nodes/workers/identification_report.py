@@ -84,7 +84,7 @@ class ReportWriter:
             from trawl_ros.estimation.report.in_motion import report_in_motion
 
             rejections = [identification.finder.rejections]
-            self._write(report_in_motion(outcome, rejections, self._truth))
+            self._write(report_in_motion(outcome, rejections, self._gear, self._truth))
         ends = f'{outcome.duration_s / 60:.0f} min of tow used; {outcome.fit.reason}'
         return ends if self._folder is None else f'{self._folder}: {ends}'
 

@@ -7,7 +7,6 @@ from functools import cached_property
 
 from trawl_ros.core.arrays import Slice
 from trawl_ros.effects.base.effect import Effect
-from trawl_ros.records.coefficients import COEFFICIENTS
 
 NET = ('drag', 'weight')
 """Factors on drag and weight in water of the net."""
@@ -21,9 +20,10 @@ class MotionParameters:
 
     Attributes
     ----------
-    coefficients, net
-        True to include the twelve coefficients of the boards, and the two factors on drag and
-        weight in water of the net.
+    coefficients
+        Names of the parameters of the boards' law; none if the coefficients are held.
+    net
+        True to include the two factors on drag and weight in water of the net.
     effects
         Effects whose values are parameters.
     inputs
@@ -34,7 +34,7 @@ class MotionParameters:
         `trawl_ros.solver.motion.tow`).
     """
 
-    coefficients: bool = True
+    coefficients: tuple[str, ...] = ()
     net: bool = False
     effects: tuple[Effect, ...] = ()
     inputs: tuple[str, ...] = ()
@@ -44,7 +44,7 @@ class MotionParameters:
     def names(self) -> tuple[str, ...]:
         """Names (m) of all parameters, in order."""
         return (
-            *(COEFFICIENTS if self.coefficients else ()),
+            *self.coefficients,
             *(NET if self.net else ()),
             *(f'{effect.name} {own.name}' for effect in self.effects for own in effect.parameters),
             *self.inputs,
@@ -57,7 +57,7 @@ class MotionParameters:
     @cached_property
     def _starts(self) -> tuple[int, ...]:
         sizes = (
-            len(COEFFICIENTS) if self.coefficients else 0,
+            len(self.coefficients),
             len(NET) if self.net else 0,
             sum(len(effect.parameters) for effect in self.effects),
             len(self.inputs),

@@ -16,10 +16,9 @@ from scipy.stats import truncnorm
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState, TrawlError
-from trawl_ros.gear.boards import CoefficientsRecord, FasteningRecord
+from trawl_ros.gear.boards import FasteningRecord
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import GearModel, build_model
-from trawl_ros.records.coefficients import COEFFICIENTS
 from trawl_ros.solver.equilibrium import Equilibrium, steady_state
 from trawl_ros.solver.trim import roll_for
 from trawl_ros.solver.trimming.held_gear import HeldGear, attitude_at
@@ -86,7 +85,7 @@ class DrawnBoard:
 
     @property
     def coefficients(self) -> FloatArray:
-        """Coefficients (12,) in the order of eq. 36."""
+        """Coefficients (q,) in the order of eq. 36."""
         return self.model.coefficients
 
     @property
@@ -176,14 +175,14 @@ def with_fastening(gear: GearRecord, points: FloatArray) -> GearRecord:
 
 
 def with_coefficients(gear: GearRecord, values: FloatArray) -> GearRecord:
-    """Return the gear with other coefficients (12,) of its boards, in the order of eq. 36."""
-    record = CoefficientsRecord(**dict(zip(COEFFICIENTS, map(float, values), strict=True)))
+    """Return the gear with other coefficients (q,) of its boards."""
+    record = gear.board.coefficients.with_values(values)
     board = gear.board.model_copy(update={'coefficients': record})
     return gear.model_copy(update={'board': board})
 
 
 def _drawn(gear: GearRecord, rng: np.random.Generator, factor: float) -> FloatArray:
-    """Draw coefficients (12,) from the prior, truncated at its bounds."""
+    """Draw coefficients (q,) from the prior, truncated at its bounds."""
     known = gear.identification
     start, low, high = (np.array(part) for part in (known.start, known.low, known.high))
     std = factor * np.array(known.std)

@@ -125,7 +125,7 @@ def angles_from(
     """
     model.gear.require_boards('whose angles could be found')
     model = coarsest_model(model)
-    low, high = model.board.law_range
+    low, high = model.board.law.range
     margin = 0.02 * (high - low)
     # The tilt of a pitched board is at least its pitch.
     inclinations = inclination_range(pitch)

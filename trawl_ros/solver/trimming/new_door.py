@@ -18,7 +18,6 @@ from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.gear.boards import BoardRecord
 from trawl_ros.gear.edit import WRITTEN_DECIMALS
 from trawl_ros.gear.records import GearRecord
-from trawl_ros.model.board import coefficients_at
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.solver.equilibrium import SteadyState, steady_state
 from trawl_ros.solver.trim import Trim, trim
@@ -186,7 +185,7 @@ def _first_usable(
 
 
 def _attitudes(gear: GearRecord) -> Iterator[tuple[float, float]]:
-    low, high = build_model(gear).board.law_range
+    low, high = build_model(gear).board.law.range
     for lean, fraction in product(OPTIONS.inclinations_deg, OPTIONS.range_fractions):
         yield low + fraction * (high - low), float(np.radians(lean))
 
@@ -200,11 +199,9 @@ def _equal_lift_area(old: GearRecord, new: GearRecord, state: SteadyState | None
     lifts = []
     for gear, known in ((old, state), (new, None)):
         board = build_model(gear).board
-        low, high = board.law_range
+        low, high = board.law.range
         attack = low + OPTIONS.range_fractions[0] * (high - low)
         if known is not None:
             attack = known.observables.port_attack
-        law = board.law or coefficients_at
-        found = law(gear.board.coefficients.array(), np.array([attack]), np.zeros(1))
-        lifts.append(float(found[0, 1]))
+        lifts.append(float(board.law(gear.board.coefficients.array(), attack, 0.0)[1]))
     return old.board.area_m2 * lifts[0] / lifts[1]

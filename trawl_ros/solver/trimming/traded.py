@@ -92,7 +92,7 @@ def trade_for_place(
         Angles that reach the wanted values or come nearest, and the changes for them.
     """
     coarse, place = coarsest_model(model), (warp_length, speed)
-    low, high = coarse.board.law_range
+    low, high = coarse.board.law.range
     margin = 0.02 * (high - low)
     inclinations = inclination_range(pitch)
     room = np.ones(len(changes))

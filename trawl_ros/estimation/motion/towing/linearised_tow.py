@@ -23,7 +23,7 @@ class LinearisedTow:
         The tow, and where it is linearised.
     values : (n, k) array
         Predicted means; NaN in stretches that are left out.
-    by_coefficients : (n, k, 12) array
+    by_coefficients : (n, k, q) array
     by_added_mass : (n, k, 1) array
     by_errors : (n, k, e) array
         By a std of each of `INPUT_ERRORS`.

@@ -58,7 +58,7 @@ class TowedGear:
     def parameters(self, inputs: Sequence[str], motions: int) -> MotionParameters:
         """Parameters of the derivatives, with additions to the inputs and slow motions."""
         return MotionParameters(
-            coefficients=True,
+            coefficients=self.model.board.law.parameters.names,
             net=bool(self.net_std),
             effects=(ADDED_MASS, *self.examined),
             inputs=tuple(inputs),
@@ -93,7 +93,7 @@ class TowedGear:
 class TowedPoint:
     """Point at which a tow is linearised.
 
-    ``coefficients`` (12,), ``added_mass`` as a part of the cylinder of water around a board,
+    ``coefficients`` (q,), ``added_mass`` as a part of the cylinder of water around a board,
     ``errors`` (e,) of the inputs in std, ``drifts`` (knots,) their errors at all knots, SI, and
     ``net`` (2,), factors on its drag and weight in water.
     """

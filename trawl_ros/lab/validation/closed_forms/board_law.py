@@ -19,7 +19,7 @@ from trawl_ros.lab.report.panes import panes
 from trawl_ros.lab.validation.cases import ValidationCase
 from trawl_ros.lab.validation.closed_forms.paper_board import PaperBoard, coefficients
 from trawl_ros.model.assembly import board_loads, points_of
-from trawl_ros.model.board import coefficients_at
+from trawl_ros.model.board_laws import EQ14
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.state import State
 from trawl_ros.model.water import Water
@@ -190,9 +190,9 @@ def run(quick: bool) -> Findings:
 def _continuation_checks(record: BoardRecord) -> list[MeasuredValue]:
     """Check the continuation of the law outside its range."""
     attack = np.radians(np.linspace(-180.0, 180.0, 3601))
-    seen = coefficients_at(record.coefficients.array(), attack, np.zeros_like(attack))
+    seen = EQ14(record.coefficients.array(), attack, np.zeros_like(attack))
     ends = np.radians([-40.0, 90.0])
-    gone = coefficients_at(record.coefficients.array(), ends, np.zeros(2))
+    gone = EQ14(record.coefficients.array(), ends, np.zeros(2))
     jumps = np.abs(np.diff(seen, axis=0)).max()
     return [
         MeasuredValue(
@@ -222,7 +222,7 @@ def _continuation_checks(record: BoardRecord) -> list[MeasuredValue]:
 def _drawn(record: BoardRecord) -> Figure:
     figure, every = panes(8.4, 4.2, 1, 2)
     fine, dots = np.linspace(-90.0, 120.0, 421), np.linspace(-90.0, 120.0, 43)
-    curves = coefficients_at(record.coefficients.array(), np.radians(fine), np.zeros_like(fine))
+    curves = EQ14(record.coefficients.array(), np.radians(fine), np.zeros_like(fine))
     points = np.array([coefficients(record, np.radians(alpha), 0.0) for alpha in dots])
     names = ('$C_x^F$', '$C_y^F$', '$C_z^F$', '$C_x^M$', '$C_y^M$', '$C_z^M$')
     for axes, group, title in zip(every, ((0, 1, 2), (3, 4, 5)), ('force', 'moment'), strict=True):

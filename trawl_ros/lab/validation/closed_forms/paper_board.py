@@ -155,24 +155,24 @@ def attack(ux: float, other: float) -> float:
 
 def coefficients(record: BoardRecord, alpha: float, beta: float) -> tuple[float, ...]:
     """The six coefficients of eq. 14, and their stated continuation outside 0-40°."""
-    k = record.coefficients
+    a1, c1, a2, c2, b3, c3, a4, c4, b5, c5, a6, c6 = map(float, record.coefficients.array())
     if 0.0 <= alpha <= FULL and abs(beta) <= FULL:
         return (
-            k.a1 * alpha + k.c1,
-            k.a2 * alpha + k.c2,
-            k.b3 * beta + k.c3,
-            k.a4 * alpha + k.c4,
-            k.b5 * beta + k.c5,
-            k.a6 * alpha + k.c6,
+            a1 * alpha + c1,
+            a2 * alpha + c2,
+            b3 * beta + c3,
+            a4 * alpha + c4,
+            b5 * beta + c5,
+            a6 * alpha + c6,
         )
     fade = float(FADING(alpha))
     rest, slip = float(RESTING_ATTACK(alpha)), float(RESTING_SLIP(beta))
-    drag = k.a1 * float(RESTING_ATTACK(FACING(alpha))) + k.c1
+    drag = a1 * float(RESTING_ATTACK(FACING(alpha))) + c1
     return (
         max(drag, 0.0),
-        fade * (k.a2 * rest + k.c2),
-        fade * k.b3 * slip + k.c3,
-        fade * (k.a4 * rest + k.c4),
-        fade * k.b5 * slip + k.c5,
-        fade * (k.a6 * rest + k.c6),
+        fade * (a2 * rest + c2),
+        fade * b3 * slip + c3,
+        fade * (a4 * rest + c4),
+        fade * b5 * slip + c5,
+        fade * (a6 * rest + c6),
     )

@@ -21,7 +21,7 @@ from trawl_ros.lab.validation.paper.sweeps import (
     warp_sweep,
 )
 from trawl_ros.lab.validation.paper.trial import measured, trial_windows, warp_length, widest_speed
-from trawl_ros.model.board import coefficients_at
+from trawl_ros.model.board_laws import EQ14
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -43,7 +43,7 @@ def point_board(model: GearModel, attack: float, slip: float) -> GearModel:
     attack, slip
         α and β (rad) at which their constant force coefficients are read off eq. 14.
     """
-    values = coefficients_at(model.coefficients, np.array(attack), np.array(slip))
+    values = EQ14(model.coefficients, np.array(attack), np.array(slip))
     constants = np.zeros(len(COEFFICIENTS))
     constants[[COEFFICIENTS.index(name) for name in FORCES]] = values[:3]
     return model.with_coefficients(constants).with_board(points=np.zeros((3, 3)))

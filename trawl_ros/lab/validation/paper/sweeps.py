@@ -14,7 +14,7 @@ import numpy as np
 from trawl_ros.gear.load import load_gear
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.assembly import board_loads
-from trawl_ros.model.board import coefficients_at
+from trawl_ros.model.board_laws import EQ14
 from trawl_ros.model.gear_model import GearModel, build_model
 from trawl_ros.model.observables import outward_normal_lift
 from trawl_ros.records.observables import Observables
@@ -93,7 +93,7 @@ def paper_model(quick: bool) -> GearModel:
 def sighting(model: GearModel, steady: SteadyState) -> Sighting:
     """Read a steady state of a model."""
     seen, state = steady.observables, steady.equilibrium.state
-    coefficients = coefficients_at(
+    coefficients = EQ14(
         model.coefficients,
         np.array(seen.port_attack),
         np.array(seen.port_slip),
