@@ -5,8 +5,11 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from endurance.robustness.changed_values import tow_outcome
 from endurance.robustness.random_commands import commanded_hour
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.lab.report.measured import MeasuredValue, at_most
 from trawl_ros.lab.report.rates import rate
@@ -35,10 +38,10 @@ def changed_gear(gear: GearRecord, key: str, factor: float, length: float) -> Ou
     return Outcome(name, outcome, sentence, time.process_time() - began)
 
 
-def random_hour(gear: GearRecord, seed: int) -> Outcome:
-    """Tow an hour of random commands."""
-    began = time.process_time()
-    hour = commanded_hour(build_model(gear), seed)
+def random_hour(gear: GearRecord, seed: int, points: FloatArray | None = None) -> Outcome:
+    """Tow an hour of random commands, if wanted with other fastening points (3, 3), m."""
+    began, model = time.process_time(), build_model(gear)
+    hour = commanded_hour(model if points is None else model.with_board(points=points), seed)
     return Outcome(
         f'hour {seed}',
         'failed' if hour.failure else 'towed',
@@ -85,5 +88,8 @@ def hour_rows(hours: Sequence[Outcome]) -> list[MeasuredValue]:
             [hour.outcome == 'failed' for hour in hours],
         ),
         MeasuredValue('hours in which a board fell', len(fell), note='And the tow went on.'),
+        MeasuredValue(
+            'median time with a fallen board', float(np.median([h.fallen_s for h in hours])), 's'
+        ),
         MeasuredValue('hours after which a board lay still', len(lying)),
     ]

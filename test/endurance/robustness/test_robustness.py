@@ -11,6 +11,8 @@ from endurance.robustness.rows import Outcome, changed_gear, hour_rows, random_h
 from endurance.robustness.winch_manoeuvres import (
     MANOEUVRES,
     SPEEDS_M_S,
+    STANDING_POINTS_M,
+    held_places,
     lets_fall,
     manoeuvre_rows,
 )
@@ -95,15 +97,21 @@ def test_changed_gears_have_a_steady_state_or_a_physical_reason(show) -> None:
 @pytest.mark.timeout(0 if FULL else 400)
 def test_hours_of_random_commands_are_towed_to_their_end(show) -> None:
     gear = MeshResolution(24 if FULL else 12).model('kaifuha')
-    rows = hour_rows([random_hour(gear, seed) for seed in range(100 if FULL else 3)])
-    show('Hours of random commands', rows)
-    assert [row.what for row in rows if not row.ok] == []
+    for title, points in (('Hours', None), ('Hours, points sought in motion', STANDING_POINTS_M)):
+        seeds = range(30 if FULL else 2)
+        rows = hour_rows([random_hour(gear, seed, points) for seed in seeds])
+        show(title, rows)
+        assert [row.what for row in rows if not row.ok] == []
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(0 if FULL else 400)
 def test_boards_stand_when_both_winches_stop_together_up_to_2_5_m_s(show) -> None:
     model = build_model(MeshResolution(24 if FULL else 12).model('kaifuha'))
-    show('Winch manoeuvres straight ahead', manoeuvre_rows(model, SPEEDS_M_S if FULL else (2.2,)))
+    speeds = SPEEDS_M_S if FULL else (2.2,)
+    show('Winch manoeuvres', [*manoeuvre_rows(model, speeds), held_places(model)])
+    standing = model.with_board(points=STANDING_POINTS_M)
+    rows = [*manoeuvre_rows(standing, speeds), held_places(standing)]
+    show('The same with points that were sought in motion', rows)
     hauling = MANOEUVRES[0]
     assert not any(lets_fall(model, hauling, 300.0, speed) for speed in (1.6, 2.2, 2.5))
