@@ -46,7 +46,7 @@ def test_an_empty_file_is_no_bag(bag_path, mcap_path):
 @pytest.mark.parametrize(
     ('name', 'content', 'words'),
     [
-        ('log.csv', b'time,depth\n1,2\n', r"log\.csv: starts with b'time,dep'"),
+        ('log.csv', b'time,depth\n1,2\n', r'log\.csv: starts with .time,dep'),
         ('x.db3', b'garbage' * 100, r'x\.db3: cannot be read'),
     ],
 )

@@ -246,7 +246,8 @@ def refuse_missing(path: Path) -> None:
     """
     if not path.exists():
         near = nearest(path.name, [*names_in(path.parent), *names_in(share_path('bags'))])
-        raise BagError(f'{path}: no such bag, expected {BagError.expected}{near}')
+        sample = '; the sample bag of the package is sea_trial'
+        raise BagError(f'{path}: no such bag, expected {BagError.expected}{near or sample}')
 
 
 def no_bag(folder: Path) -> str:

@@ -57,7 +57,7 @@ def info(bag: Path, as_json: bool) -> None:
     opened = Bag(bag, lenient=True)
     summary = opened.summary()
     if not summary.count:
-        raise BagError('; '.join(summary.problems))
+        raise BagError(f'{"; ".join(summary.problems)}, expected at least one; record it again')
     if as_json:
         click.echo(info_as_json(opened, summary))
         return

@@ -189,7 +189,7 @@ class McapFile:
             )
         if magic != MCAP0_MAGIC:
             raise BagError(
-                f'{self.path}: starts with {magic!r}, expected an MCAP file; '
+                f'{self.path}: starts with {str(magic)[1:]}, expected an MCAP file; '
                 '`trawl import-log` makes a bag of a log of another kind'
             )
         with suppress(*DAMAGE):

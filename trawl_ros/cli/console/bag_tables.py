@@ -126,7 +126,8 @@ def print_check(check: BagCheck, console: Console) -> None:
         where = f'{finding.topic} ' if finding.topic else ''
         console.print(escape(f'Found ({finding.kind}): {where}{finding.text}'), soft_wrap=True)
     number = len(check.findings)
-    console.print(f'{number} findings' if number else 'Sound: nothing found')
+    findings = '1 finding' if number == 1 else f'{number} findings'
+    console.print(findings if number else 'Sound: nothing found')
 
 
 def check_as_json(check: BagCheck) -> str:

@@ -180,9 +180,11 @@ def _wait(
     while not bench.count_subscribers(bench.full_name(WINCH)) or not bench.commanding():
         if process.poll() is not None or time.monotonic() > end:
             said = log.read_text(encoding='utf-8', errors='replace').strip().splitlines()
-            last = f': {said[-1]}' if said else ''
+            ended = process.poll()
+            found = 'does not command the winches' if ended is None else f'ended with code {ended}'
+            last = f' ({said[-1]})' if said else ''
             raise TrawlError(
-                f'{command}{last}; expected a node in /{NAMESPACE} that listens to {WINCH} and '
-                f'publishes {WINCH_COMMAND}'
+                f'{command}: {found}{last}, expected a node in /{NAMESPACE} that listens to '
+                f'{WINCH} and publishes {WINCH_COMMAND}'
             )
         executor.spin_once(timeout_sec=0.05)
