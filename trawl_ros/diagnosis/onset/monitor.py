@@ -219,8 +219,9 @@ class OnsetMonitor:
         self._owed = True
 
     def _try_others(self, number: int) -> None:
-        """Watch with other boards, from the stretch behind one on; the last of `NEARER` wait as
-        after any stop, before all are tried once more.
+        """Watch with other boards from the next stretch on.
+
+        After the last of `NEARER` the watch waits as after any stop, and then tries all again.
         """
         way, turn = self._usual - self._known.values, self._tried % (len(NEARER) + 1)
         self._tried += 1

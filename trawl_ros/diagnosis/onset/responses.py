@@ -168,8 +168,10 @@ def _grown(values: FloatArray) -> FloatArray:
 
 
 def _followed(steps: FloatArray, shares: FloatArray) -> FloatArray:
-    """Part still missing (a, k, m) since a counter leapt, of what its course has followed by shares
-    (a,); ``steps`` (a, k, m) is that since a course leapt.
+    """Return the part still missing (a, k, m) since a counter leapt.
+
+    Its course has followed by ``shares`` (a,); ``steps`` (a, k, m) is the part missing since a
+    course leapt.
     """
     still = np.zeros_like(steps)
     for age, part in enumerate(np.diff(shares, prepend=0.0)):
@@ -197,8 +199,9 @@ def _held(inputs: tuple[float, float, float]) -> InputPoint:
 
 
 def _with_tail(fading: FloatArray, oldest: int, decay_s: float) -> FloatArray:
-    """Fading parts of `FOLLOWED` stretches, gone on with to the ``oldest``; they fall to 1/e in
-    ``decay_s``.
+    """Extend the fading parts of `FOLLOWED` stretches to the ``oldest``.
+
+    They fall to 1/e in ``decay_s``.
     """
     more = np.arange(1, max(oldest - len(fading), 0) + 1)
     tail = fading[-1] * np.exp(-more * LIVE.stretch_s / decay_s)[:, None, None]

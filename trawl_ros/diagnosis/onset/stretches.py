@@ -58,8 +58,9 @@ UNHEARD_LOG = 0.02
 
 @dataclass(frozen=True)
 class CounterLeap:
-    """Length (m) by which a counter has leapt in a stretch beside what its winch paid out, and its
-    std.
+    """Leap of a counter in a stretch, beyond what its winch paid out.
+
+    ``length`` and ``std`` are in m.
     """
 
     length: float = 0.0

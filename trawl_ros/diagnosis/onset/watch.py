@@ -58,8 +58,20 @@ class WatchedStretch:
 
 @dataclass(frozen=True)
 class WatchSettings:
-    """Settings of a watch: what may begin in which gear, how many onsets are looked at, the factor
-    on the std of errors that are stated, and stretches through which boards are learned at least.
+    """Settings of a watch.
+
+    Attributes
+    ----------
+    gear
+        The gear that is watched.
+    table
+        Candidates that may begin.
+    window
+        Onsets that are examined, in stretches.
+    inflation
+        Factor on the std of errors that are stated.
+    learning
+        Stretches through which boards are learned, at least.
     """
 
     gear: WatchedGear
@@ -208,9 +220,7 @@ class Watch:
         )
 
     def take_along(self, columns: Sequence[int], onset: int) -> None:
-        """Take values along as known to be there since a stretch, and watch for what comes beside
-        them.
-        """
+        """Take values as present since a stretch, and watch for further onsets."""
         assert self._filter is not None
         for column in columns:
             # The oldest makes room.

@@ -96,8 +96,14 @@ class Whitened:
 
 @dataclass(frozen=True)
 class FilterState:
-    """State of the filter: estimates (s,), their covariance (s, s), and how far the gear is from
-    its rest.
+    """State of the filter.
+
+    Attributes
+    ----------
+    mean, variance
+        Estimates (s,), and their covariance (s, s).
+    unrest
+        Departure of the gear from its equilibrium, from 0 to 1.
     """
 
     mean: FloatArray
