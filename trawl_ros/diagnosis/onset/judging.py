@@ -9,8 +9,8 @@ import numpy as np
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.candidates import CandidateTable
 from trawl_ros.diagnosis.onset.findings import Finding, OnsetValue
+from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
-from trawl_ros.diagnosis.onset.stretches import LIVE
 
 SIMILAR_EVIDENCE = 6.0
 """Difference in twice the log evidence from the best candidate within which others are listed."""
