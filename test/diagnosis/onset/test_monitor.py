@@ -8,16 +8,17 @@ import pytest
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
-from trawl_ros.diagnosis.onset.monitor import BEFORE, NEARER, NOT_CLOSE, OnsetMonitor
-from trawl_ros.diagnosis.onset.stretches import LIVE, StretchCutter
-from trawl_ros.diagnosis.onset.watch import LEARNS, REST
+from trawl_ros.diagnosis.onset.monitor import NEARER, NOT_CLOSE, OnsetMonitor
+from trawl_ros.diagnosis.onset.part import LIVE, SETTLING
+from trawl_ros.diagnosis.onset.watch import JUST_BEGUN, LEARNS, REST
 from trawl_ros.effects.registry import catalogue
 from trawl_ros.estimation.from_gear import board_prior
+from trawl_ros.estimation.motion.towing.lineariser import BY_SENSOR
 from trawl_ros.gear.load import load_gear
 from trawl_ros.messages.diagnostics import WARN
 from trawl_ros.nodes.workers.finding_status import onset_watch_status
 from trawl_ros.records.coefficients import COEFFICIENTS
-from trawl_ros.records.samples import WinchSample
+from trawl_ros.records.samples import AttitudeSample, WinchSample
 
 BEGIN_S = 540.0
 FEW = {name: catalogue()[name] for name in ('tension_cell', 'net_drag', 'catch_build_up')}
@@ -73,7 +74,7 @@ def test_evidence_by_boards_that_are_not_close_is_confirmed_by_those_as_learned_
 def test_a_gap_is_told_and_the_tow_is_watched_again_behind_it(monitor, onset_samples):
     silent = (480.0, 600.0)
     reasons = set()
-    for sample in onset_samples(18):
+    for sample in onset_samples(23):
         if not silent[0] < sample.stamp / SECOND < silent[1]:
             assert monitor.feed(sample) == []
             reasons.add(monitor.why_not)
@@ -105,11 +106,22 @@ def test_where_the_model_cannot_be_towed_boards_nearer_to_those_of_the_gear_file
     assert monitor.why_not == ''
 
 
-def test_a_model_begun_anew_is_towed_along_what_is_looked_at_before(onset_samples):
-    """It begins in an equilibrium, and so nothing may have moved in its first stretch."""
-    cutter = StretchCutter(lambda pressure: pressure)
-    *_, last = (one for sample in onset_samples(8) for one in cutter.feed(sample))
-    assert last.place == BEFORE + 1
+def test_after_a_fall_the_model_begins_again_and_boards_have_to_be_close_once_more(
+    monitor, onset_samples
+):
+    told = []
+    monitor._on_stretch = told.append
+    for sample in onset_samples(20):
+        lies = isinstance(sample, AttitudeSample) and sample.side == 'port'
+        falls = lies and 540.0 < sample.stamp / SECOND < 565.0
+        assert monitor.feed(replace(sample, roll=2.6) if falls else sample) == []
+    reasons = [one.why_not for one in told]
+    fell = reasons.index(BY_SENSOR)
+    assert '' in reasons[:fell]
+    behind = reasons[fell + 1 :]
+    assert behind[:SETTLING] == [JUST_BEGUN] * SETTLING
+    assert behind[SETTLING : SETTLING + REST] == [LEARNS] * REST
+    assert set(behind[SETTLING + REST :]) == {''}
 
 
 def test_while_boards_are_far_from_what_is_learned_nothing_is_raised_and_that_is_told(
@@ -132,6 +144,5 @@ def test_while_boards_are_far_from_what_is_learned_nothing_is_raised_and_that_is
     assert monitor.unwatched == len(told)
     assert monitor.watched == len(judged)
     # What is known of errors is still known where the watch began anew with other boards.
-    compared = [one.white for one in (*told, *judged) if one.white is not None]
-    place = WATCHED.index('port_roll')
-    assert all(np.linalg.norm(one.root[place]) > 3.0 for one in compared)
+    compared = [one for one in (*told, *judged) if one.compared]
+    assert all(one.std[WATCHED.index('port_roll')] > 3.0 for one in compared)

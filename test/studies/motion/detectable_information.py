@@ -14,7 +14,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.diagnosis.inference.candidates import Candidate
 from trawl_ros.diagnosis.inference.marginal import Marginal
 from trawl_ros.diagnosis.onset.candidates import WATCHED
-from trawl_ros.diagnosis.onset.towing import WatchedGear
+from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.estimation.fit.error_terms import GROUPS, LONGER, USUAL_LENGTH
 from trawl_ros.estimation.fit.parameters import ParameterVector
@@ -28,9 +28,8 @@ from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, without_erro
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
 from trawl_ros.estimation.motion.towing.records import MovingTow
-from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
+from trawl_ros.estimation.motion.towing.towed_gear import TowedPoint
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.records.observables import OBSERVABLES
 
 OPTIONS = MotionOptions()
 
@@ -99,7 +98,7 @@ def information_in_motion(gear: ExaminedGear, tows: Sequence[MovingTow]) -> Moti
         If it cannot be towed along any stretch.
     """
     watched, parts, counted = gear.watched, [], 0.0
-    towed = TowedGear(gear.model, watched.acting, examined=watched.moving)
+    towed = watched.towed
     for tow in tows:
         none = np.zeros(len(INPUT_ERRORS)), np.zeros(tow.inputs.number_of_knots)
         linear = linearise_tow(towed, tow, TowedPoint(gear.coefficients, 0.0, *none))
@@ -151,14 +150,13 @@ def _lengths(tow: MovingTow) -> FloatArray:
 def _by_values(watched: WatchedGear, linear: LinearisedTow) -> FloatArray:
     """Derivatives (n, k, m) of means by the values of all effects, on the gear and on sensors."""
     tow, inputs = linear.tow, without_errors(linear.tow.inputs)
-    rows = [OBSERVABLES.index(name) for name in tow.channels]
     places = [WATCHED.index(name) for name in tow.channels]
     number = sum(len(effect.parameters) for effect in watched.effects)
-    found = np.zeros((len(tow), len(rows), number))
+    found = np.zeros((len(tow), len(places), number))
     for stretch in np.flatnonzero(linear.towed):
-        moved = np.zeros((len(OBSERVABLES), linear.by_examined.shape[-1]))
-        shown = np.zeros(len(OBSERVABLES))
-        moved[rows], shown[rows] = linear.by_examined[stretch], linear.values[stretch]
+        moved = np.zeros((len(WATCHED), linear.by_examined.shape[-1]))
+        shown = np.zeros(len(WATCHED))
+        moved[places], shown[places] = linear.by_examined[stretch], linear.values[stretch]
         at = inputs(float(tow.middles[stretch])).situation
         found[stretch] = watched.by_values(moved, shown, at)[places]
     return found

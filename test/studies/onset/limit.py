@@ -14,8 +14,8 @@ from scipy.stats import chi2
 from studies.onset.trial import clean_marks
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.onset.candidates import CandidateTable, candidate_table
+from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.diagnosis.onset.ratios import FEWEST
-from trawl_ros.diagnosis.onset.stretches import LIVE
 
 TAIL = 0.1
 """Part of the rarest by which the tail is told."""

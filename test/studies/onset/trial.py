@@ -18,7 +18,7 @@ from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.onset.history import CourseKeeper, WatchedCourse
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
-from trawl_ros.diagnosis.onset.stretches import LIVE
+from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.diagnosis.onset.watch import WatchedStretch
 from trawl_ros.diagnosis.report.onset_figure import onset_figure
 from trawl_ros.effects.base.effect import Effect, Readings, Situation

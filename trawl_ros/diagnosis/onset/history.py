@@ -38,12 +38,8 @@ class CourseKeeper:
 
     def __call__(self, stretch: WatchedStretch) -> None:
         """Keep a stretch."""
-        shown, white = np.full(len(WATCHED), np.nan), stretch.white
-        if white is not None:
-            shown[white.rows] = white.whitened(white.residual)
-        judged = white is not None and not stretch.why_not
-        rarity = stretch.rarity if judged else np.nan
-        self._rows.append((stretch.end_ns, shown, rarity))
+        rarity = np.nan if stretch.why_not else stretch.rarity
+        self._rows.append((stretch.end_ns, stretch.innovations, rarity))
 
     @property
     def course(self) -> WatchedCourse:

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Judging of the evidence after a stretch: the finding it makes, its onset, values and names."""
+"""Finding that the evidence after a stretch supports: its onset, values and names."""
 
 from collections.abc import Sequence
 
@@ -9,12 +9,14 @@ import numpy as np
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.candidates import CandidateTable
 from trawl_ros.diagnosis.onset.findings import Finding, OnsetValue
+from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
-from trawl_ros.diagnosis.onset.stretches import LIVE
 
-ALIKE = 6.0
-"""Candidates whose evidence comes within this of the best's are listed with it, as by the rules
-for steady windows."""
+SIMILAR_EVIDENCE = 6.0
+"""Difference in twice the log evidence from the best candidate within which others are listed."""
+
+NORMAL_QUANTILE_95 = 1.96
+"""Half-width of a 95 % interval, in std."""
 
 
 def finding(
@@ -25,20 +27,20 @@ def finding(
     raised_ns: int,
     limit: float,
 ) -> Finding:
-    """Make the finding that evidence speaks for.
+    """Return the finding that the evidence supports.
 
     Parameters
     ----------
     table
         The candidates.
     number
-        Of the finding.
+        Number of the finding.
     end_ns
         End (ns) of the newest stretch.
     evidence
-        Of all candidates, the rarest first.
+        Evidence for all candidates, the rarest first.
     raised_ns
-        Time (ns) at which it was raised.
+        Time (ns) at which the finding was raised.
     limit
         Rarity beyond which it is raised.
     """
@@ -52,7 +54,7 @@ def finding(
         raised_ns=raised_ns,
         updated_ns=end_ns,
         onset_ns=end_ns - (best.age + 1) * length,
-        # An onset within a stretch may be taken for one with the next.
+        # An onset late in a stretch looks like one at the beginning of the next.
         onset_low_ns=end_ns - (int(best.ages.max()) + 1) * length - length // 2,
         onset_high_ns=end_ns - int(best.ages.min()) * length,
         name=candidate.name,
@@ -61,8 +63,8 @@ def finding(
         alike=tuple(
             table.candidates[one.candidate].name
             for weighed, one in others
-            # A candidate that fits no worse is not told apart, however many values it takes.
-            if weighed > most - ALIKE or one.ratio >= best.ratio
+            # A candidate that fits no worse cannot be told apart, however many values it has.
+            if weighed > most - SIMILAR_EVIDENCE or one.ratio >= best.ratio
         ),
         rarity=evidence[0].rarity,
         limit=limit,
@@ -70,22 +72,22 @@ def finding(
 
 
 def _values(table: CandidateTable, best: OnsetEvidence) -> dict[str, OnsetValue]:
-    """Values of a candidate's parameters with their intervals of 95 %, within what is possible."""
+    """Return a candidate's values with their 95 % intervals, within the bounds."""
     own = [table.parameters[column] for column in table.candidates[best.candidate].columns]
     std = np.sqrt(np.diag(best.covariance))
     values = {}
     for parameter, departure, one in zip(own, best.values, std, strict=True):
         value = parameter.neutral + departure
-        ends = np.array([value - 1.96 * one, value + 1.96 * one])
+        ends = np.array([value - NORMAL_QUANTILE_95 * one, value + NORMAL_QUANTILE_95 * one])
         low, high = np.clip(ends, parameter.low, parameter.high)
         values[parameter.name] = OnsetValue(float(value), float(low), float(high), parameter.unit)
     return values
 
 
 def weight(table: CandidateTable, one: OnsetEvidence) -> float:
-    """Twice the logarithm of the evidence: the ratio, less what its values could have been."""
+    """Return twice the log evidence: the likelihood ratio less the Occam factor."""
     own = list(table.candidates[one.candidate].columns)
-    # The determinant of the prior's covariance over the posterior's.
+    # The Occam factor is the determinant of the prior covariance over the posterior's.
     known = np.linalg.slogdet(one.covariance)[1]
     free = 2.0 * float(np.sum(np.log(table.scale[own])))
     return one.ratio - (free - float(known))

@@ -13,55 +13,38 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.candidates import CandidateTable, candidate_table
 from trawl_ros.diagnosis.onset.findings import Finding
+from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.diagnosis.onset.judging import finding
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
+from trawl_ros.diagnosis.onset.part import LENGTH_NS, SETTLING
 from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
-from trawl_ros.diagnosis.onset.stretches import LIVE, LastStretch, StretchCutter
-from trawl_ros.diagnosis.onset.towing import SETTLING_S, WatchedGear
+from trawl_ros.diagnosis.onset.residuals import ErrorModel
 from trawl_ros.diagnosis.onset.watch import (
     CLOSE,
+    JUST_BEGUN,
     REST,
+    Absorbed,
     Watch,
     WatchedStretch,
     WatchSettings,
-    WatchState,
+    WatchStart,
 )
 from trawl_ros.effects.base.effect import Effect
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.estimation.from_gear import board_prior
-from trawl_ros.estimation.motion.stretches import FEWEST
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.gear_model import build_model
 from trawl_ros.model.water import build_water
 from trawl_ros.records.samples import Sample
 
 NOT_CLOSE = 'something may have begun, or boards are others: the tow is watched again first'
-"""Reason for which no finding is raised of evidence beyond the limit."""
-
-BEFORE, QUIET = FEWEST - 1, 8
-"""Stretches up to the newest, behind the first that a model begun again with the next is towed
-along; and the last of those before, that first among them, in which nothing may have moved: the
-model would begin in an equilibrium while the gear was on its way to one."""
-
-AGAIN, MOST_KEPT, AHEAD, HURRIED = 60, 120, 4, 8
-"""Stretches that are watched again, at least where the tow is that long; that are kept, at most;
-and that are watched again with each new one, and while boards are learned first."""
-
-SHORTEST, WAITS = 0.2, 20
-"""Part of a change of boards below which it is not tried; stretches until all of it is tried
-again."""
+"""Reason why evidence beyond the limit raises no finding."""
 
 NEARER = 0.1, 0.2, 0.3, 0.4
 """Parts of the way from the known boards to those of the gear file. Where the model cannot be
 towed, they are tried in turn. The model is linearised there first; what is known stays so."""
-
-POORLY, LEARNING = 0.5, 20
-"""Std of boards, in that of the gear file's prior (geometric mean), beyond which they are known too
-poorly to tell one state of the gear by another; and stretches through which they are learned then,
-at least."""
 
 WHITE_LIMIT, MARGIN = 6.41, 1.4
 """Rarity that white innovations exceed once in 230 h, over all candidates and onsets, by
@@ -71,37 +54,45 @@ quite white, by hand. docs/studies/onset.md has how rare innovations of clean to
 
 @dataclass(frozen=True)
 class OnsetOptions:
-    """Options of the monitor.
+    """Options of the monitor; times are in stretches of 30 s.
 
     Attributes
     ----------
     window
-        Onsets that are looked at, in stretches.
+        Onsets that are examined.
     settled
         Stretches since its onset after which a finding stays as it is.
     limit
         Rarity beyond which a finding is raised: `MARGIN` times `WHITE_LIMIT`.
     inflation
         Factor on the std of errors that are stated, as for steady windows.
+    again, longest
+        Stretches that are watched again with other boards, at least where the tow is that long;
+        and after which the watch begins with these, for its memory grows with their square.
+    pace, hurried_pace
+        Stretches that are watched again with each new one; and while boards are learned first, or
+        where something may have begun.
+    smallest_change
+        Part of a change of boards below which it is not tried.
+    pause
+        Stretches until all of a change is tried again.
+    poorly_known, learning
+        Std of boards, in that of the gear file's prior (geometric mean), beyond which the states
+        of the gear cannot be told apart; and stretches through which boards are learned then.
     """
 
     window: int = 60
     settled: int = 50
     limit: float = round(MARGIN * WHITE_LIMIT, 1)
     inflation: float = 1.2
-
-
-@dataclass(frozen=True)
-class _Kept:
-    """Stretch that may be watched again, with the state before it.
-
-    ``rests`` is true where the model may begin with it, ``predicted`` where it was towed along it.
-    """
-
-    last: LastStretch
-    before: WatchState
-    rests: bool
-    predicted: bool
+    again: int = 60
+    longest: int = 180
+    pace: int = 4
+    hurried_pace: int = 16
+    smallest_change: float = 0.2
+    pause: int = 20
+    poorly_known: float = 0.5
+    learning: int = 20
 
 
 class OnsetMonitor:
@@ -144,44 +135,44 @@ class OnsetMonitor:
         last_number: int = 0,
     ) -> None:
         gear.require_boards('whose tow could be watched')
-        self.options = options or OnsetOptions()
+        self.options = own = options or OnsetOptions()
         self._known = knowledge or of_gear_file(gear)
         self.table: CandidateTable = candidate_table(effects)
         watched = WatchedGear(build_model(gear), effects_of(gear), self.table.at_one_hour())
-        own, prior = self.options, board_prior(gear)
+        prior = board_prior(gear)
         self._usual = prior.start
         known = np.sqrt(np.diag(self._known.covariance)) / prior.std
-        learning = LEARNING if np.exp(np.mean(np.log(known))) > POORLY else 0
-        self._settings = WatchSettings(watched, self.table, own.window, own.inflation, learning)
-        self._depth = build_water(gear).depth
+        learning = own.learning if np.exp(np.mean(np.log(known))) > own.poorly_known else 0
+        errors = ErrorModel(self._known, own.inflation)
+        self._settings = WatchSettings(
+            watched, build_water(gear), self.table, errors, own.window, learning
+        )
         self._on_stretch = on_stretch
-        self.why_not = self.withheld = ''
         self.findings: dict[int, Finding] = {}
         self._newest = last_number
         self.reset()
 
     def reset(self) -> None:
-        """Begin again with no tow; findings so far stay as they are."""
-        if (left := self.open) is not None:
-            self._put(replace(left, state='settled'))
-        self._cutter = StretchCutter(self._depth)
-        self._watch = Watch(self._settings, self._known, self._known.values)
-        self._tried = 0
+        """Begin a new tow; findings stay."""
+        self._watch = Watch(self._settings, WatchStart(self._known.values))
+        self._samples: deque[Sample] = deque()
         self._next: Watch | None = None
-        self._kept: deque[_Kept] = deque(maxlen=MOST_KEPT)
-        self._moved: deque[bool] = deque(maxlen=QUIET + BEFORE)
-        self._rarity, self._part, self._not_before = 0.0, 1.0, 0
+        self._tried, self._judged = 0, False
+        self._rarity, self._part, self._not_before_ns = 0.0, 1.0, 0
         self._owed = self._confirmed = False
         self.watched = self.unwatched = 0
-        self.why_not, self.withheld = 'the tow has just begun', ''
+        self.why_not, self.withheld = JUST_BEGUN, ''
 
     def feed(self, sample: Sample) -> list[Finding]:
         """Take a sample; return findings that are new or have changed."""
-        # Told before the rest of the work is done: whoever asked has it meanwhile.
+        # Findings go out before the rest of the work is done.
         if self._owed:
             self._owed = False
             self._catch_up()
-        return [found for last in self._cutter.feed(sample) for found in self._take(last)]
+        self._samples.append(sample)
+        if self._next is not None:
+            self._next.feed(sample)
+        return list(self._take()) if self._watch.feed(sample) else []
 
     def dismiss(self, number: int) -> Finding | None:
         """Take a finding for what is no effect; None where there is no such open one."""
@@ -202,87 +193,92 @@ class OnsetMonitor:
         self.findings[found.number] = found
         return found
 
-    def _take(self, last: LastStretch) -> Iterator[Finding]:
-        before = self._watch.state
-        stretch = self._watch.advance(last)
-        self._keep(last, before, stretch)
+    def _take(self) -> Iterator[Finding]:
+        stretch = self._watch.advance()
         self.why_not, self.withheld, self._rarity = stretch.why_not, '', stretch.rarity
-        if stretch.white is None or stretch.why_not:
+        if stretch.why_not:
             self.unwatched += 1
         else:
             self.watched += 1
+            self._judged = True
         self._on_stretch(stretch)
         if stretch.evidence:
-            yield from self._judge(last, stretch.evidence)
-        if self._watch.refused:
-            self._try_others(last.number)
+            yield from self._judge(stretch.end_ns, stretch.evidence)
+        if self._watch.lost:
+            self._begin_again()
+        oldest_ns = self._watch.part.begin_ns(0)
+        while self._samples and self._samples[0].stamp < oldest_ns:
+            self._samples.popleft()
         self._owed = True
 
-    def _try_others(self, number: int) -> None:
-        """Watch with other boards, from the stretch behind one on; the last of `NEARER` wait as
-        after any stop, before all are tried once more.
-        """
-        way, turn = self._usual - self._known.values, self._tried % (len(NEARER) + 1)
-        self._tried += 1
-        if turn < len(NEARER) and np.any(way):
-            boards = self._known.values + NEARER[turn] * way
-            self._watch = Watch(self._settings, self._known, boards, number=number)
+    def _watch_from(self, begin_ns: int, start: WatchStart) -> Watch:
+        """Return a watch that begins at a stamp."""
+        watch = Watch(self._settings, start)
+        for sample in self._samples:
+            if sample.stamp >= begin_ns:
+                watch.feed(sample)
+        return watch
 
-    def _keep(self, last: LastStretch, before: WatchState, stretch: WatchedStretch) -> None:
-        # The model begins some minutes before the first stretch that it is towed along.
-        begins = last.tow is not None and last.place * LIVE.stretch_s >= SETTLING_S - 1e-6
-        self._moved.append(any(last.moves))
-        rests = begins and not last.fell and not any(list(self._moved)[:-BEFORE])
-        self._kept.append(_Kept(last, before, rests, stretch.towed is not None))
+    def _begin_again(self) -> None:
+        """Begin another part behind the newest stretch.
+
+        Where the model was never towed, boards nearer to those of the gear file are tried first.
+        """
+        watch, begin_ns = self._watch, self._watch.part.end_ns
+        start = replace(watch.start, belief=watch.belief(), compared=watch.compared)
+        way, turn = self._usual - self._known.values, self._tried % (len(NEARER) + 1)
+        if watch.refused and not self._judged and np.any(way):
+            self._tried += 1
+            boards = self._known.values
+            if turn < len(NEARER):
+                boards, begin_ns = boards + NEARER[turn] * way, watch.part.begin_ns(0)
+            start = replace(start, coefficients=boards)
+        self._watch, self._next = self._watch_from(begin_ns, start), None
 
     def _catch_up(self) -> None:
-        """Watch a part of what was watched again, with other boards, where there is reason to."""
+        """Watch a part of the tow again with other boards, where there is reason to."""
         if self.open is not None:
             # A finding is followed by the watch that made it.
             self._next = None
             return
         if self._next is None:
             self._next = self._again()
-        if self._next is None:
+        other, watch, limit = self._next, self._watch, self.options.limit
+        if other is None:
             return
-        behind = [kept for kept in self._kept if kept.last.number > self._next.number]
-        limit, rarity = self.options.limit, 0.0
-        pace = HURRIED if self._watch.learns or self._rarity > limit else AHEAD
-        for kept in behind[:pace]:
-            stretch = self._next.advance(kept.last)
-            rarity = stretch.rarity
-            if kept.predicted and stretch.towed is None:
-                self._refuse()
-                return
-        if len(behind) <= pace:
+        hurry = watch.learns or self._rarity > limit
+        stretch = other.advance(self.options.hurried_pace if hurry else self.options.pace)
+        if other.lost:
+            self._refuse()
+        elif len(other) >= other.part.number:
             # Of boards a part of the way to those as learned the same evidence proves nothing.
-            self._confirmed = rarity > limit and self._part == 1.0
-            self._compare(self._next)
+            self._confirmed = stretch.rarity > limit and self._part == 1.0
+            self._compare(other)
 
     def _again(self) -> Watch | None:
-        """Watch with the boards as they were learned; None where there is no reason for one."""
-        watch, learned = self._watch, self._watch.learned
-        if learned is None or watch.away < CLOSE or watch.number < self._not_before:
+        """Return a watch with the boards as they were learned; None without a reason for one."""
+        watch, learned, own = self._watch, self._watch.learned, self.options
+        far = watch.away >= CLOSE and watch.part.end_ns >= self._not_before_ns
+        if learned is None or not (far or len(watch) > own.longest):
             return None
-        resting = [place for place, kept in enumerate(self._kept) if kept.rests]
-        enough = [place for place in resting if place <= len(self._kept) - AGAIN]
-        if not resting:
-            return None
-        first = self._kept[enough[-1] if enough else resting[0]]
-        boards = watch.coefficients + self._part * (learned - watch.coefficients)
-        own = self._settings, self._known, boards, first.before
-        return Watch(*own, number=first.last.number - 1)
+        first = max(len(watch) - own.again - SETTLING, 0)
+        at = watch.start.coefficients
+        start = replace(
+            watch.start, coefficients=at + self._part * (learned - at),
+            belief=watch.belief(first + SETTLING),
+        )  # fmt: skip
+        return self._watch_from(watch.part.begin_ns(first), start)
 
     def _refuse(self) -> None:
         """Go on with the watch as it is, and try a smaller change of boards."""
         self._next = None
         self._part *= 0.5
-        if self._part < SHORTEST:
-            self._settle(self._watch, WAITS)
+        if self._part < self.options.smallest_change:
+            self._settle(self.options.pause)
 
     def _compare(self, other: Watch) -> None:
         """Take another watch where its boards are closer to what is learned with them."""
-        if self._kept[-1].predicted and other.away >= self._watch.away:
+        if other.away >= self._watch.away and len(self._watch) <= self.options.longest:
             self._refuse()
             return
         hurried = self._watch.learns and not self._settings.learning
@@ -290,35 +286,33 @@ class OnsetMonitor:
             # That boards are close to what they were learned from proves nothing.
             other.close = 0
         self._watch, self._next = other, None
-        self._settle(other, 0 if hurried else REST)
+        self._settle(0 if hurried else REST)
 
-    def _settle(self, watch: Watch, waits: int) -> None:
-        """Stay with a watch for so many stretches."""
-        self._part, self._not_before = 1.0, watch.number + waits
+    def _settle(self, waits: int) -> None:
+        """Stay with the watch for so many stretches."""
+        self._part, self._not_before_ns = 1.0, self._watch.part.end_ns + waits * LENGTH_NS
 
-    def _judge(self, last: LastStretch, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
+    def _judge(self, now_ns: int, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
         before, limit = self.open, self.options.limit
-        rarest = evidence[0]
         if before is None:
-            yield from self._raise(last, evidence)
+            yield from self._raise(now_ns, evidence)
             return
-        if rarest.rarity < 0.5 * limit:
-            yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
+        if evidence[0].rarity < 0.5 * limit:
+            yield self._put(replace(before, state='withdrawn', updated_ns=now_ns))
             return
-        found = finding(self.table, before.number, last.end_ns, evidence, before.raised_ns, limit)
+        found = finding(self.table, before.number, now_ns, evidence, before.raised_ns, limit)
         if found.onset_ns >= before.raised_ns:
             # An onset after the finding was raised is that of another one.
-            yield self._put(replace(before, state='withdrawn', updated_ns=last.end_ns))
-            yield from self._raise(last, evidence)
+            yield self._put(replace(before, state='withdrawn', updated_ns=now_ns))
+            yield from self._raise(now_ns, evidence)
             return
-        age = (last.end_ns - before.onset_ns) / (LIVE.stretch_s * SECOND)
-        if age >= self.options.settled:
+        if now_ns - before.onset_ns >= self.options.settled * LENGTH_NS:
             found = replace(found, state='settled')
             self._take_along(found)
         yield self._put(found)
 
-    def _raise(self, last: LastStretch, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
-        now, limit = last.end_ns, self.options.limit
+    def _raise(self, now_ns: int, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
+        limit = self.options.limit
         if evidence[0].rarity <= limit:
             self._confirmed = False
             return
@@ -327,13 +321,11 @@ class OnsetMonitor:
             self.withheld = NOT_CLOSE
             return
         self._newest, self._confirmed = self._newest + 1, False
-        yield self._put(finding(self.table, self._newest, now, evidence, now, limit))
+        yield self._put(finding(self.table, self._newest, now_ns, evidence, now_ns, limit))
 
     def _take_along(self, found: Finding) -> None:
-        """Take what was found along as known to be there, and watch for what comes beside it."""
+        """Take what was found as present, and watch for what begins beside it."""
         (candidate,) = (one for one in self.table.candidates if one.name == found.name)
-        since = round((found.updated_ns - found.onset_ns) / (LIVE.stretch_s * SECOND))
-        self._watch.take_along(candidate.columns, self._watch.number - since + 1)
-        # A watch that begins before would not know of it.
-        self._kept.clear()
+        absorbed = [Absorbed(column, found.onset_ns) for column in candidate.columns]
+        self._watch.take_along(absorbed, found.updated_ns)
         self._next = None

@@ -7,23 +7,23 @@ Window-limited generalised likelihood ratios (Willsky and Jones, IEEE Trans. Aut
 are correlated with these, for each onset.
 """
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import chdtri, gammaln, log_ndtr, logsumexp, xlogy
 
-from trawl_ros.core.arrays import FloatArray, IntArray
+from trawl_ros.core.arrays import FloatArray, IntArray, Slice
 from trawl_ros.diagnosis.onset.candidates import CandidateTable
-from trawl_ros.diagnosis.onset.whitening import Whitened, WhiteningFilter
+from trawl_ros.diagnosis.onset.chain import Link
 
 FEWEST = 2
 """Stretches since an onset, at least, before it counts."""
 
 MOVING = 6.0
-"""Rarity that is asked for beyond the limit of an onset while winches or speed change, which fades
-as the model's error does (`WhiteningFilter.unrest`): what boards near their stall do then is not
-within the derivatives of a course, and looks like something that begins. By hand, on tows of seeds
-that score nothing: docs/studies/lessons.md."""
+"""Rarity that an onset needs beyond the limit in a manoeuvre; it fades with the unrest. What boards
+near their stall do then is beyond the derivatives, and looks like something that begins. Chosen on
+tows of development seeds: docs/studies/lessons.md."""
 
 NEAR = float(chdtri(1, 0.05))
 """Difference from the largest ratio that 95 % of the likelihood do not exclude."""
@@ -68,8 +68,6 @@ class RatioBank:
         The candidates.
     window
         Onsets w that are kept, in stretches.
-    size
-        States of the whitening filter.
 
     Attributes
     ----------
@@ -79,58 +77,59 @@ class RatioBank:
         Of marks.
     """
 
-    def __init__(self, table: CandidateTable, window: int, size: int) -> None:
+    def __init__(self, table: CandidateTable, window: int) -> None:
         self.table, self._window = table, window
         p = len(table.parameters)
-        self._means = np.zeros((window, size, p))
         self.products, self.squares = np.zeros((window, p)), np.zeros((window, p, p))
         self._asked = np.zeros(window)
+        # Rows of each stretch in the chain, and its marks (r, w, p) by age of the onset then.
+        self._marks: deque[tuple[Slice, FloatArray]] = deque(maxlen=window - 1)
         self.known = 0
 
-    def forget(self) -> None:
-        """Discard all onsets so far."""
-        for array in (self._means, self.products, self.squares):
-            array[:] = 0.0
-        self.known = 0
-
-    def step(
-        self, whitening: WhiteningFilter, white: Whitened | None, signatures: FloatArray | None
-    ) -> FloatArray | None:
+    def step(self, link: Link | None, signatures: FloatArray, unrest: float) -> FloatArray | None:
         """Advance by a stretch, in which another onset may lie.
 
         Parameters
         ----------
-        whitening
-            The filter, after the stretch.
-        white
-            Its innovations; None where there are none.
-        signatures : (w, k, p) array
-            Of the stretch, by age.
+        link
+            The stretch in the chain; None where nothing was compared.
+        signatures : (w, r, p) array
+            Of the stretch, by age of the onset.
+        unrest
+            1 in a manoeuvre, from which it fades.
 
         Returns
         -------
         array or None
             Marks (w, r, p) of the signatures in the innovations, of unit size; None without any.
         """
-        for array in (self._means, self.products, self.squares, self._asked):
+        for array in (self.products, self.squares, self._asked):
             array[1:] = array[:-1].copy()
             array[0] = 0.0
-        self._asked[0] = MOVING * whitening.unrest
-        if whitening.unrest == 1.0:
-            # An onset just before is told by what moved alone.
+        self._asked[0] = MOVING * unrest
+        if unrest == 1.0:
+            # An onset just before shows by what moved alone.
             self._asked[: 1 + FEWEST] = MOVING
         self.known = min(self.known + 1, self._window)
-        means = np.moveaxis(self._means, 1, 0)
-        whitening.advance(means)
-        if white is None or signatures is None:
+        if link is None:
+            self._marks.append((slice(0, 0), np.zeros((0, *self.products.shape))))
             return None
-        own = signatures[:, white.rows] - white.model @ self._means
-        marks = np.moveaxis(white.whitened(np.moveaxis(own, 1, 0)), 0, 1)
-        self._means += white.gain @ own
-        told = white.whitened(white.residual)
-        self.products += np.einsum('wrp,r->wp', marks, told)
+        own = np.moveaxis(signatures, 1, 0).copy()
+        # Before the first onset that is known there is none.
+        own[:, self.known :] = 0.0
+        for late, (place, marks) in enumerate(reversed(self._marks), start=1):
+            own[:, late:] -= np.tensordot(link.back[:, place], marks[:, :-late], 1)
+        found = link.whitened(own)
+        self._marks.append((link.place, found))
+        marks = np.moveaxis(found, 1, 0)
+        self.products += np.einsum('wrp,r->wp', marks, link.white)
         self.squares += np.matmul(np.swapaxes(marks, 1, 2), marks)
         return marks
+
+    def forget(self) -> None:
+        """Discard all onsets so far."""
+        self.products[:], self.squares[:], self.known = 0.0, 0.0, 0
+        self._marks.clear()
 
     def best(self) -> list[OnsetEvidence]:
         """Evidence for each candidate at its likeliest onset; the rarest first."""

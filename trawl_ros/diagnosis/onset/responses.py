@@ -15,12 +15,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.diagnosis.onset.stretches import LIVE, counter_leap_shares
-from trawl_ros.diagnosis.onset.towing import ROWS, WatchedGear
-from trawl_ros.effects.base.effect import Situation
-from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
-from trawl_ros.records.channels import INPUTS
+from trawl_ros.diagnosis.onset.gear import ROWS, WatchedGear
+from trawl_ros.diagnosis.onset.part import LIVE, counter_leap_shares
 from trawl_ros.solver.motion.course import InputPoint
+from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.tow import DifferentiatedTow
 from trawl_ros.solver.slow_mode import slow_mode
 
@@ -29,15 +27,6 @@ FOLLOWED = 20
 
 STEP_S = 5.0
 """Step of that; a stretch is a whole number of it."""
-
-LOG_TAPS = 8
-"""Stretches for which an error of the log in one stretch is felt."""
-
-LEAP_TAPS = 24
-"""Stretches since a counter leapt in which the gear does not yet rest with that."""
-
-
-ERRORS = [error.name for error in INPUT_ERRORS]
 
 
 @dataclass(frozen=True)
@@ -51,21 +40,14 @@ class OnsetResponses:
         by the values of all effects.
     grown : (a, k, p) array
         Integral of that over time, in hours, up to the middle of each stretch.
-    log : (t, k) array
-        Means of the stretches since by a log that shows 1 m/s too much in one stretch alone.
     applied : (a, p) array
         Part of each value that the model's inputs have followed: 1 but for errors of counters,
         whose level in the minutes before they are.
-    counters : (l, k, 2) array
-        Part of what each counter changes by 1 m too much for long that is still missing since it
-        leapt by that, of what inputs have followed.
     """
 
     fading: FloatArray
     grown: FloatArray
-    log: FloatArray
     applied: FloatArray
-    counters: FloatArray
 
     def only(self, columns: Sequence[int]) -> 'OnsetResponses':
         """Responses to some of the values alone."""
@@ -99,7 +81,7 @@ class OnsetResponses:
 def onset_responses(
     gear: WatchedGear,
     coefficients: FloatArray,
-    inputs: tuple[float, float, float],
+    inputs: FloatArray,
     oldest: int,
 ) -> OnsetResponses:
     """Responses at a steady state.
@@ -108,7 +90,7 @@ def onset_responses(
     ----------
     gear, coefficients
         Gear that is towed.
-    inputs
+    inputs : (3,) array
         Warp lengths (m) and speed (m/s) of the state.
     oldest
         Stretches to which responses are known.
@@ -120,14 +102,13 @@ def onset_responses(
     StepFailed
         If its motion cannot be computed.
     """
-    parameters = gear.parameters
-    point = _held(inputs)
+    parameters = MotionParameters(effects=gear.moving)
+    point = InputPoint(inputs, np.zeros(3), hours=1.0)
     motion = DifferentiatedTow(
         gear.model.with_coefficients(coefficients), parameters, lambda time: point, gear.acting
     )
-    lasting = motion.observed()
-    own = parameters.of_effects, parameters.of_inputs
-    motion.forget(slice(own[0].start, own[1].stop))
+    lasting, own = motion.observed(), parameters.of_effects
+    motion.forget(own)
     steps, towed = round(LIVE.stretch_s / STEP_S), []
     last = motion.observed().slopes
     for _ in range(FOLLOWED):
@@ -139,25 +120,18 @@ def onset_responses(
         # The first of the two derivatives at an onset is that before it.
         means = np.array([0.5 * (a + b) for a, b in itertools.pairwise(seen)])
         towed.append(np.mean(means, axis=0))
-    missing = lasting.slopes - np.array(towed)
-    at = Situation(inputs, hours=1.0)
-    shown = [gear.by_values(one[:, own[0]], lasting.values, at) for one in missing]
+    missing = (lasting.slopes - np.array(towed))[:, ROWS, own]
+    shown, at = lasting.values[ROWS], point.situation
     # Errors of sensors show at once: they are not missing, and came in with each.
-    nothing = gear.by_values(np.zeros_like(missing[0][:, own[0]]), lasting.values, at)
+    at_once = gear.by_values(np.zeros_like(missing[0]), shown, at)
+    fading = np.array([gear.by_values(one, shown, at) for one in missing]) - at_once
     # Beyond the towed stretches only the slowest motion is left.
     decay_s = max(slow_mode(motion.model, motion.first).decay_s, STEP_S)
-    fading = _with_tail(np.array(shown) - nothing, oldest, decay_s)
-    shares = counter_leap_shares(oldest)
-    counted = gear.counted(at)
+    fading = _with_tail(fading, oldest, decay_s)
+    shares, counted = counter_leap_shares(oldest), gear.counted(at)
     fading[..., counted] = _followed(fading[..., counted], shares)
     applied = np.where(counted, shares[:, None], 1.0)
-    places = [ERRORS.index(f'{name} offset') for name in INPUTS[:2]]
-    stds = [INPUT_ERRORS[place].std for place in places]
-    columns = [own[1].start + place for place in places]
-    leapt = _with_tail(missing[:, ROWS][:, :, columns] / stds, LEAP_TAPS, decay_s)
-    counters = _followed(leapt, shares[:LEAP_TAPS])
-    log = _of_log(gear, np.array(towed), own[1].start)
-    return OnsetResponses(fading, _grown(fading), log, applied, counters)
+    return OnsetResponses(fading, _grown(fading), applied)
 
 
 def _grown(values: FloatArray) -> FloatArray:
@@ -168,8 +142,10 @@ def _grown(values: FloatArray) -> FloatArray:
 
 
 def _followed(steps: FloatArray, shares: FloatArray) -> FloatArray:
-    """Part still missing (a, k, m) since a counter leapt, of what its course has followed by shares
-    (a,); ``steps`` (a, k, m) is that since a course leapt.
+    """Return the part still missing (a, k, m) since a counter leapt.
+
+    Its course has followed by ``shares`` (a,); ``steps`` (a, k, m) is the part missing since a
+    course leapt.
     """
     still = np.zeros_like(steps)
     for age, part in enumerate(np.diff(shares, prepend=0.0)):
@@ -177,28 +153,10 @@ def _followed(steps: FloatArray, shares: FloatArray) -> FloatArray:
     return still
 
 
-def _of_log(gear: WatchedGear, towed: FloatArray, first: int) -> FloatArray:
-    place = ERRORS.index('speed offset')
-    # A log that shows too much is a ship that is slower; by a std of that error.
-    steps = towed[:LOG_TAPS, :, first + place][:, ROWS] / INPUT_ERRORS[place].std
-    pulses: FloatArray = np.diff(steps, axis=0, prepend=0.0)
-    return pulses
-
-
-def _held(inputs: tuple[float, float, float]) -> InputPoint:
-    additions = np.zeros((len(INPUT_ERRORS), 3))
-    for row, error in enumerate(INPUT_ERRORS):
-        column = INPUTS.index(error.channel)
-        additions[row, column] = -error.std * (inputs[column] if error.relative else 1.0)
-    return InputPoint(
-        np.array(inputs), np.zeros(3), hours=1.0,
-        errors=additions, error_rates=np.zeros_like(additions),
-    )  # fmt: skip
-
-
 def _with_tail(fading: FloatArray, oldest: int, decay_s: float) -> FloatArray:
-    """Fading parts of `FOLLOWED` stretches, gone on with to the ``oldest``; they fall to 1/e in
-    ``decay_s``.
+    """Extend the fading parts of `FOLLOWED` stretches to the ``oldest``.
+
+    They fall to 1/e in ``decay_s``.
     """
     more = np.arange(1, max(oldest - len(fading), 0) + 1)
     tail = fading[-1] * np.exp(-more * LIVE.stretch_s / decay_s)[:, None, None]

@@ -94,6 +94,11 @@ class TowLineariser:
     def __len__(self) -> int:
         return len(self._means)
 
+    @property
+    def failed(self) -> str:
+        """Reason why no moving stretch is predicted before the next steady one; '' if they are."""
+        return self._failed
+
     def extend(
         self,
         tow: MovingTow,

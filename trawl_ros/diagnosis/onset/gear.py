@@ -1,0 +1,87 @@
+# Copyright the trawl_ros developers
+# SPDX-License-Identifier: Apache-2.0
+"""Gear that is watched: the model, and its derivatives by the values of all that may begin."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trawl_ros.core.arrays import BoolArray, FloatArray
+from trawl_ros.diagnosis.library.drift import Drift
+from trawl_ros.diagnosis.onset.candidates import WATCHED, AtOneHour
+from trawl_ros.effects.base.effect import Effect, Situation
+from trawl_ros.effects.effect_set import EffectSet
+from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
+from trawl_ros.model.gear_model import GearModel
+from trawl_ros.records.observables import OBSERVABLES
+from trawl_ros.solver.effect_sensitivity import shown_values
+from trawl_ros.solver.motion.course import by_values
+
+ROWS = [OBSERVABLES.index(name) for name in WATCHED]
+
+
+@dataclass(frozen=True)
+class WatchedGear:
+    """Gear that is towed along: the model, the effects that are there, and those that may begin."""
+
+    model: GearModel
+    acting: EffectSet
+    effects: tuple[Effect, ...]
+
+    @property
+    def moving(self) -> tuple[Effect, ...]:
+        """Effects that act on the gear or on what it is towed with."""
+        return tuple(effect for effect in self.effects if acts_on_gear(effect))
+
+    @property
+    def towed(self) -> TowedGear:
+        """Gear as the estimator tows it."""
+        return TowedGear(self.model, self.acting, examined=self.moving)
+
+    def counted(self, at: Situation) -> BoolArray:
+        """Return flags (p,) of the values that change what counters show."""
+        shown, flags = np.array(at.inputs), []
+        for effect in self.effects:
+            for place, parameter in enumerate(effect.parameters):
+                values = effect.neutral
+                values[place] += parameter.std
+                true = effect.apply_to_inputs(values, shown.copy(), at)
+                flags.append(not np.array_equal(true[:2], shown[:2]))
+        return np.array(flags, np.bool_)
+
+    def by_values(self, moved: FloatArray, shown: FloatArray, at: Situation) -> FloatArray:
+        """Return derivatives (k, p) of readings by the values of all effects.
+
+        Parameters
+        ----------
+        moved : (k, m) array
+            Derivatives of the watched channels by the values of effects on the gear.
+        shown : (k,) array
+            Watched channels by the model.
+        at
+            The situation.
+        """
+        observables = np.zeros(len(OBSERVABLES))
+        observables[ROWS] = shown
+        parts, first = [], 0
+        for effect in self.effects:
+            part = np.zeros((len(ROWS), len(effect.parameters)))
+            if acts_on_gear(effect):
+                last = first + len(effect.parameters)
+                part, first = part + moved[:, first:last], last
+            if type(effect).apply_to_sensors is not Effect.apply_to_sensors:
+                by_sensors = by_values(
+                    self.acting, effect, lambda there: shown_values(there, observables, at)
+                )
+                part = part + by_sensors[:, ROWS].T
+            parts.append(part)
+        return np.hstack(parts)
+
+
+def acts_on_gear(effect: Effect) -> bool:
+    """Return True if an effect may act on the gear or on what it is towed with."""
+    own = effect.of if isinstance(effect, AtOneHour) and effect.of is not None else effect
+    if isinstance(own, Drift) and not any(own.inputs):
+        return False
+    kind = type(own)
+    return kind.gear is not Effect.gear or kind.apply_to_inputs is not Effect.apply_to_inputs
