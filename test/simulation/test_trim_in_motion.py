@@ -16,7 +16,7 @@ from trawl_ros.solver.trimming.held_gear import coarsest_model
 from trawl_ros.solver.trimming.over_range import hole_limits
 
 SHORT = replace(
-    OPTIONS, candidates=6, per_generation=6, calm_seeds=(1001,), calm_s=60.0, swell_s=10.0
+    OPTIONS, candidates=4, per_generation=4, calm_seeds=(1001,), calm_s=30.0, swell_s=5.0
 )
 WARPS, SPEEDS = (300.0, 500.0), (1.9, 2.3)
 

@@ -10,19 +10,15 @@ coefficients from which identification starts, since the true ones are unknown.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
-from multiprocessing import get_context
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.core.parallel import cores
+from trawl_ros.core.parallel import run_tasks
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.simulation.command import Command
@@ -180,13 +176,14 @@ def trim_in_motion(
     )
     first = _lean(coarse, wish)
     best = _judged(coarse, wish, coarse.board.points.ravel())
-    with _map_on_all_cores() as run:
-        for done in range(0, options.candidates, options.per_generation):
-            on_progress(WorkProgress('riggings', done, options.candidates))
-            tried = search.ask()
-            found = list(run(partial(_judged, coarse, wish), tried))
-            search.tell(tried, [one[0] for one in found])
-            best = min((best, *found), key=lambda one: one[0])
+    judge = partial(_judged, coarse, wish)
+    for done in range(0, options.candidates, options.per_generation):
+        on_progress(WorkProgress('riggings', done, options.candidates))
+        tried = search.ask()
+        tasks = {f'rigging {number}': one for number, one in enumerate(tried)}
+        found = dict(run_tasks(judge, tasks))
+        search.tell(tried, [found[name][0] for name in tasks])
+        best = min((best, *found.values()), key=lambda one: one[0])
     on_progress(WorkProgress('riggings', options.candidates, options.candidates))
     _, lean, points = best
     if points is None:
@@ -198,15 +195,6 @@ def trim_in_motion(
 
 Judged = tuple[float, float, FloatArray | None]
 """Merit of a candidate (deg), its lean (deg), and its trimmed points; None if it has none."""
-
-Run = Callable[[Callable[[FloatArray], Judged], Iterable[FloatArray]], Iterable[Judged]]
-"""Map of a judgement over candidates."""
-
-
-@contextmanager
-def _map_on_all_cores() -> Iterator[Run]:
-    with ProcessPoolExecutor(cores(), mp_context=get_context('spawn')) as pool:
-        yield pool.map
 
 
 def _judged(model: GearModel, wish: _Wish, coordinates: FloatArray) -> Judged:
