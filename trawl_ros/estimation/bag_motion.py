@@ -118,8 +118,8 @@ def fit_tows(
     Raises
     ------
     TrawlError
-        If the model cannot be towed along any stretch, or the fit does not come to rest while there
-        are windows to fall back on.
+        If the model cannot be towed along any stretch, or the fit does not converge and there are
+        windows to fall back on.
     """
     estimate = None if identification is None else identification.estimate
     prior, options, towed = (

@@ -59,13 +59,18 @@ def read_tow(task: BagTask, on_progress: OnProgress = ignore) -> FoundWindows:
             detail = f'{len(windows)} steady windows'
             on_progress(WorkProgress('reading', done / SECOND, None, 's', detail))
     windows += [item for item in finder.finish() if isinstance(item, SteadyWindow)]
+    why_not = identification.why_not()
+    if identification.missing_channels():
+        why_not = (
+            f'{why_not}; expected readings on all of these, `trawl bag check` lists the topics'
+        )
     return FoundWindows(
         name=str(task.path),
         windows=tuple(windows),
         arrived=finder.arrived,
         readings=finder.readings,
         rejections=finder.rejections,
-        why_not=None if windows else identification.why_not(),
+        why_not=None if windows else why_not,
         problems=tuple(stream.problems),
     )
 

@@ -145,10 +145,7 @@ class Identification:
         silent = dict.fromkeys(CHANNELS[name].topic for name in missing if not arrived[name])
         phrases = [f'no readings on {", ".join(silent)}'] if silent else []
         phrases += [f'none usable of {arrived[n]} of {n}' for n in missing if arrived[n]]
-        return (
-            f'nothing is estimated: {"; ".join(phrases)}, expected readings on all of these; '
-            '`trawl bag check` says what is wrong with them'
-        )
+        return f'nothing is estimated: {"; ".join(phrases)}'
 
     def _about_clocks(self) -> str | None:
         stamps = {name: self.finder.newest(name) or 0 for name in REQUIRED}

@@ -249,7 +249,7 @@ def test_what_speaks_against_a_fit_is_listed(tows):
     words = coloured.channel.replace('_', ' ')
     for part in (
         'Refused, wrong unit: door/port/pressure is plausible in feet.',
-        'not come to rest: still moving', 'a1 at its lower bound 0',
+        'not converged: still moving', 'a1 at its lower bound 0',
         f'beyond what the stated errors allow in {words} (test ratio {coloured.test_ratio:.1f})',
         f'follow each other, rather than scatter, in {words}', 'roll (2.5 times)',
     ):  # fmt: skip

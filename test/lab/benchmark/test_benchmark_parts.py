@@ -74,7 +74,7 @@ def test_shorter_steps_of_the_haul_come_closer_to_the_converged_run(coarse):
     rides = [haul.run(step) for step in (0.25, 0.75)]
     # Steps of 0.75 s do not divide 2 s: they are looked at, and held against, each 2.25 s.
     assert [(ride.every_s, len(ride.seen)) for ride in rides] == [(2.0, 4), (2.25, 3)]
-    errors = [np.abs(ride.seen - converged.beside(ride)).max(axis=0) for ride in rides]
+    errors = [np.abs(ride.seen - converged.at_steps_of(ride)).max(axis=0) for ride in rides]
     assert (errors[0] <= errors[1]).all()
 
 

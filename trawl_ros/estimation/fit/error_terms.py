@@ -280,7 +280,7 @@ def _own_std(
 
 def _unsettled(linear: Linearised, in_state: Mapping[int, int], scheme: Scheme) -> FloatArray:
     depth = linear.window.means.get('net_depth', 0.0)
-    # The windows of one state come to rest together.
+    # The windows of one state have the same unsettled motion.
     size = scheme.unsettled * abs(depth) * np.sqrt(in_state[linear.window.state])
     return in_all_channels(linear, size * linear.slow)
 

@@ -150,7 +150,7 @@ class Estimate:
     innovation
         Of the newest window; None after a fit of all windows together.
     converged, reason
-        True if the iteration has come to rest, and the criterion.
+        True if the iteration has converged, and the criterion.
     """
 
     names: tuple[str, ...]

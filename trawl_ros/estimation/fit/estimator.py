@@ -31,13 +31,13 @@ if TYPE_CHECKING:
     from trawl_ros.solver.equilibrium import Equilibrium
 
 POOR_MISFIT = 1.2
-"""Misfit from where a fit may have come to rest in a wrong place. Chance does not get there with
-the readings of a tow; with those of one window it may, and then a second fit costs little."""
+"""Misfit from which a fit may have converged to a wrong minimum. Chance alone does not reach it
+with the readings of a tow. With those of one window it may, and then a second fit costs little."""
 
 
 AS_LIKELY = 0.1
-"""Difference of log-likelihoods that tells two fits apart no more (as half a std of one
-coefficient does): of such two the one that has come to rest is taken."""
+"""Difference of log-likelihoods below which two fits are equally likely (that of half a std of one
+coefficient): of such two the converged one is taken."""
 
 
 @dataclass(frozen=True)

@@ -52,8 +52,8 @@ class EstimatorOptions:
     tolerance
         A step below this part of every coefficient's std is the end.
     second_start
-        True if a fit that explains its readings badly, or does not come to rest, is made again
-        from the prior's start.
+        True if a fit with a large misfit, or one that does not converge, is repeated from the
+        prior's start.
     """
 
     huber: float = 1.345

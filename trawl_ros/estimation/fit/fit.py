@@ -125,10 +125,10 @@ class Fit:
         """Robust loss of all windows plus half the squared departure from the prior."""
         return self.elimination.cost + self._prior_cost
 
-    def cost_beside(self, other: 'Fit') -> float:
+    def cost_with_nuisance_of(self, other: 'Fit') -> float:
         """Cost with the nuisance parameters' effect taken from another fit of the same windows.
 
-        A step is judged with that held still, as the step itself was found.
+        A step is judged with this effect fixed, as the step itself was found.
         """
         return self._eliminated(other.errors, self.jacobian[:, :, :0]).cost + self._prior_cost
 

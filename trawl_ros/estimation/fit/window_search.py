@@ -134,7 +134,7 @@ class WindowSearch:
             return self.obstacle
         left, lost = with_those_of(self.fit, there)
         # Errors do something else there; whichever way one looks at it, it is to be better.
-        better = min(there.cost, there.cost_beside(left)) <= left.cost * (1.0 + 1e-12)
+        better = min(there.cost, there.cost_with_nuisance_of(left)) <= left.cost * (1.0 + 1e-12)
         if not better and _comparable(left, there):
             self.obstacle = NO_STEP
             return self.obstacle

@@ -26,7 +26,7 @@ PLANNED = tuple(name for name in MEASURED if name in OBSERVABLES and CHANNELS[na
 """Channels that a planned window is imagined to have: all usual ones that the model predicts."""
 
 DEPTHS = tuple(name for name in PLANNED if name.endswith('depth'))
-"""Of these, those that come to rest last."""
+"""Of these, those that reach equilibrium last."""
 
 
 @dataclass(frozen=True, order=True)

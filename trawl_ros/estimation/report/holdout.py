@@ -14,7 +14,7 @@ from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.windows.records import SteadyWindow
 
 NEAR_ENOUGH = 0.1
-"""Std to which fits for hold-out come to rest."""
+"""Step, in std, at which fits for hold-out have converged."""
 
 PREDICTED = 0.2
 """Std of a reading within which they take first order for it: the errors of what is left out are

@@ -121,7 +121,7 @@ def _concerns(report: Report) -> tuple[str, ...]:
         if reason in report.found
     ]
     if not estimate.converged:
-        concerns.append(f'The iteration has not come to rest: {estimate.reason}.')
+        concerns.append(f'The iteration has not converged: {estimate.reason}.')
     if estimate.active_bounds:
         bounds = '; '.join(estimate.active_bounds)
         concerns.append(f'On a bound, so that its interval is worth little: {bounds}.')

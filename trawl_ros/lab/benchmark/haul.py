@@ -60,7 +60,7 @@ class Ride:
     every_s: float
     factorisations: int
 
-    def beside(self, other: 'Ride') -> FloatArray:
+    def at_steps_of(self, other: 'Ride') -> FloatArray:
         """Observables (n, n_watched) at the samples of another run with longer steps."""
         stride = round(other.every_s / self.every_s)
         return self.seen[stride - 1 :: stride][: len(other.seen)]
@@ -157,7 +157,7 @@ class Error:
 
 def error(ride: Ride, converged: Ride) -> Error:
     """Error of a run against the converged run, over all samples."""
-    difference = np.abs(ride.seen - converged.beside(ride)).max(axis=0)
+    difference = np.abs(ride.seen - converged.at_steps_of(ride)).max(axis=0)
     by_range = difference / np.ptp(converged.seen, axis=0)
     by_value = difference / np.abs(converged.seen).mean(axis=0)
     return Error(float(by_range.max()), float(by_value.max()), WATCHED[int(by_range.argmax())])
