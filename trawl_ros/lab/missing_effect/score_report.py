@@ -121,8 +121,9 @@ def reliability_drawing(
 def trials_words() -> str:
     """Return how trials are made, in sentences."""
     return (
-        'A trial has one baseline and three tows of three steady states, of which the second is '
-        f'held out. The plant is not the model: {FINER_MESH}, and netting of another law of drag. '
+        'A trial has one baseline and three tows of three steady states. All decide; the '
+        f'errors are compared on the second. The plant is not the model: {FINER_MESH}, and '
+        'netting of another law of drag. '
         'Windows are computed from linearised steady states; noise and offsets are '
         f'{MAKING_OPTIONS.sensor_deviation:.0%} larger or smaller than stated. The strength of a '
         'cause is a multiple of the smallest size that the likelihood of the plant can show. '
