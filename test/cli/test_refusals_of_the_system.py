@@ -44,7 +44,7 @@ def test_a_full_disk_behind_the_standard_output(arguments: list[str], tmp_path: 
 )  # fmt: skip
 def test_a_folder_that_cannot_be_written_is_told_before_the_work(words, place, tmp_path) -> None:
     (tmp_path / 'file').write_text('mine')
-    (tmp_path / 'log.csv').write_text('')
+    (tmp_path / 'log.csv').write_text('a log')
     before = sorted(tmp_path.rglob('*'))
     out = place.format(folder=tmp_path)
     words = words.format(log=tmp_path / 'log.csv').split()

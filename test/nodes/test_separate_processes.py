@@ -135,7 +135,7 @@ def test_a_tow_is_recorded_whole_and_every_process_ends_cleanly(tow):
         ('bag_recorder', {'output': '{full}/mine.txt/bag'}, 'parameter output: '),
         ('bag_player', {'bag': '{full}/nothing'}, 'nothing: no such bag'),
         ('bag_player', {'bag': '{full}'}, 'expected a bag'),
-        ('winch_node', {'instruments': 'unheard-of'}, 'there are: default.yaml'),
+        ('winch_node', {'instruments': 'unheard-of'}, 'there are: default'),
         ('sim_node', {'time_scale': -2}, '0 to 1000 (factor)'),
     ],
 )

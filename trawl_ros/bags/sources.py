@@ -258,7 +258,7 @@ def no_bag(folder: Path) -> str:
     instead = (
         f'; give {folder / bags[0]}'
         if bags
-        else '; `trawl import-log` makes a bag of a log of another kind'
+        else '; `trawl import-log LOG --draft` begins a mapping of another kind of log'
     )
     return f'{folder}: {found}, expected a bag: {BagError.expected}{instead}'
 

@@ -190,7 +190,7 @@ class McapFile:
         if magic != MCAP0_MAGIC:
             raise BagError(
                 f'{self.path}: starts with {str(magic)[1:]}, expected an MCAP file; '
-                '`trawl import-log` makes a bag of a log of another kind'
+                '`trawl import-log LOG --draft` begins a mapping of another kind of log'
             )
         with suppress(*DAMAGE):
             header = next(parse_records(stream.read(_HEADER_BYTES)))
