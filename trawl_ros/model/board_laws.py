@@ -120,7 +120,8 @@ class FormulaLaw:
         angles = np.broadcast_arrays(attack, slip, lean, rise)
         given = values, *(angle.ravel() for angle in angles[:3])
         coefficients = np.empty((angles[0].size, 6), complex)
-        FORMULAS[self.kind](*as_kind(complex, *given), coefficients)
+        point, alpha, beta, sine = as_kind(complex, *given)
+        FORMULAS[self.kind](point, alpha, beta, sine, coefficients)
         return real_like(given, coefficients).reshape(*angles[0].shape, 6)
 
 
@@ -194,7 +195,7 @@ def _fill_stalling(
         coefficients[n, 5] = -centre_ahead * normal * fade
 
 
-Formula = Callable[..., None]
+Formula = Callable[[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray], None]
 FORMULAS: Mapping[str, Formula] = MappingProxyType(
     {'eq14': _fill_eq14, 'heel': _fill_heeled, 'stall': _fill_stalling}
 )

@@ -48,7 +48,7 @@ class TowedStretch:
     ----------
     values : (k,) array
         Means of the watched channels by the model, weighted as their readings came.
-    by_coefficients : (k, 12) array
+    by_coefficients : (k, q) array
     by_inputs : (k, e) array
         By a std of each of `INPUT_ERRORS`.
     by_values : (k, p) array
@@ -149,7 +149,7 @@ class ModelTow:
     gear
         Gear that is towed.
     coefficients
-        Of its boards (12,).
+        Of its boards (q,).
 
     Attributes
     ----------

@@ -100,7 +100,7 @@ class Watch:
     known
         Knowledge before the tow.
     coefficients
-        Boards (12,) that the model is towed with.
+        Boards (q,) that the model is towed with.
     begin
         State that it begins in.
     away
@@ -143,7 +143,7 @@ class Watch:
 
     @property
     def learned(self) -> FloatArray | None:
-        """Boards (12,) by the present estimate; None where nothing was compared."""
+        """Boards (q,) by the present estimate; None where nothing was compared."""
         return None if self._filter is None else self._filter.coefficients
 
     @property

@@ -183,13 +183,13 @@ class WhiteningFilter:
 
     @property
     def coefficients(self) -> FloatArray:
-        """Coefficients (12,) by the present estimate."""
+        """Coefficients (q,) by the present estimate."""
         values: FloatArray = self._start + self._known @ self.mean[self._part(0)]
         return values
 
     @property
     def covariance(self) -> FloatArray:
-        """Covariance (12, 12) of the coefficients."""
+        """Covariance (q, q) of the coefficients."""
         own = self._part(0)
         found: FloatArray = self._known @ self.variance[own, own] @ self._known.T
         return found
@@ -229,7 +229,7 @@ class WhiteningFilter:
         towed
             The model; None where there is no prediction.
         linearised_at
-            Coefficients (12,) with which it was towed.
+            Coefficients (q,) with which it was towed.
         last
             The stretch: its log's error, and how its counters leapt.
         absorbed : (k, `MOST_ABSORBED`) array
