@@ -120,8 +120,8 @@ class FormulaLaw:
         angles = np.broadcast_arrays(attack, slip, lean, rise)
         given = values, *(angle.ravel() for angle in angles[:3])
         coefficients = np.empty((angles[0].size, 6), complex)
-        own, alpha, beta, heel = as_kind(complex, *given)
-        FORMULAS[self.kind](own, alpha, beta, heel, coefficients)
+        point, alpha, beta, sine = as_kind(complex, *given)
+        FORMULAS[self.kind](point, alpha, beta, sine, coefficients)
         return real_like(given, coefficients).reshape(*angles[0].shape, 6)
 
 

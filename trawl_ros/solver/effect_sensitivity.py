@@ -57,7 +57,7 @@ def chained(
     found
         The steady state with ``acting``.
     jacobian
-        Derivatives (n_observables, 12 + 3) of the observables by coefficients and true inputs.
+        Derivatives (n_observables, q + 3) of the observables by coefficients and true inputs.
     acting
         Effects that act on the gear.
     inputs, at

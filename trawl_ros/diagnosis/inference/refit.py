@@ -57,7 +57,7 @@ class Refit:
     estimator
         At rest, with all windows that have a steady state.
     estimate
-        Its estimate of coefficients (12,) and values behind them.
+        Its estimate of coefficients (q,) and values behind them.
     predicted
         Windows that it was not fitted to, once they are predicted, by their numbers.
     """
@@ -109,7 +109,7 @@ def fit_boards(
 ) -> Refit | None:
     """Fit the boards alone; None where no window has a steady state.
 
-    The search begins at the coefficients ``start`` (12,), or where the prior does.
+    The search begins at the coefficients ``start`` (q,), or where the prior does.
     """
     # All at once: what the first windows alone would say is not asked, and may lead astray.
     together = Estimator(predictor, prior, OBSERVABLES, options)

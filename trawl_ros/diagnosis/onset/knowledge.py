@@ -37,7 +37,7 @@ class Knowledge:
     Attributes
     ----------
     values, covariance
-        Coefficients (q,) of the boards, and their covariance (12, 12).
+        Coefficients (q,) of the boards, and their covariance (q, q).
     densities
         Noise densities of channels as steady windows show them (`noise_densities`). The scatter of
         readings counts where it is more, or where they are not known.

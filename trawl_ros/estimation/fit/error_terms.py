@@ -1,11 +1,13 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Error budget of the readings of a tow: error terms and their course over its windows.
+"""Error budget of the readings of a tow.
 
-Four kinds of error stand between a reading and the model: those of the single reading (scatter,
-and what changes from one steady state to the next), those of the window's measured warp
-lengths and speed and of a gear not quite at rest, calibration, which is wrong alike throughout
-a tow, and the model's own, alike in all tows.
+A reading differs from the model by four kinds of error:
+
+- of the single reading: noise, and an offset that changes from one steady state to the next;
+- of the window: measured warp lengths and speed, and a gear that still settles a little;
+- of calibration, the same throughout a tow;
+- of the model, the same in all tows.
 """
 
 from collections.abc import Mapping, Sequence
@@ -34,14 +36,14 @@ GROUP_OF = np.array([GROUPS.index(group_of(name)) for name in MEASURED])
 """Index into `GROUPS` of each channel (k,)."""
 
 MODEL_FRACTION = 0.003
+"""Std of the error of the model, as a fraction of the value; assumed. ``make study NAME=coverage``
+compares the default mesh with twice as fine warps and bridles and a net without joined meshes."""
 MODEL_ANGLE = np.radians(0.2)
-"""Std of what the model itself is wrong by, a part of the value, and for pitch and roll an angle
-(rad). Assumed; ``make study NAME=coverage`` measures what a gear of twice as fine warps and
-bridles and a net without joined meshes shows more than the default."""
+"""The same for pitch and roll, rad."""
 
 USUAL_LENGTH, LONGER = 500.0, 1.5
-"""The errors of the model at other lengths of warp differ from those at this one (m), and the more
-so with every factor."""
+"""Warp length (m) at which the error of the model has no trend, and the factor on this length at
+which the trend is one unit."""
 
 
 @dataclass(frozen=True)
@@ -51,18 +53,17 @@ class Scheme:
     Attributes
     ----------
     state_share
-        Part of a channel's bias, in std, that changes from one steady state to the next, where
-        the channel table has nothing measured (`Channel.state_std`); the rest stays through the
-        tow. At 0 nothing changes with the state.
+        Fraction of the std of a channel's bias that changes from one steady state to the next, if
+        the channel table has no measured value (`Channel.state_std`). The rest stays constant
+        through the tow. 0: nothing changes with the state.
     model_error
-        Factor on the model's own errors; 0 is a model taken to be exact.
+        Factor on the errors of the model; 0 for an exact model.
     model_trend
-        By so many of their std these errors change where the warps are `LONGER` times as long.
+        Change of these errors, in std, if warps are `LONGER` times as long.
     net_drag, net_weight
-        Std of the factors on the net's drag and weight in water; where both are 0 the net is held.
+        Std of the factors on drag and weight in water of the net; both 0 hold the net.
     unsettled
-        Std, as a part of the net's depth, of what is still to come of the gear's slowest motion
-        in a window that is steady to the eye.
+        Std of the remaining change of depth in a steady window, as a fraction of the net's depth.
     """
 
     state_share: float = 0.3
@@ -102,9 +103,9 @@ class Scheme:
 
 @dataclass(frozen=True)
 class ErrorTerm:
-    """Calibration error: the channel or input it belongs to, and its std there.
+    """Calibration error of a channel or input, and its std.
 
-    ``relative`` errors are parts of the value, others are in the channel's unit.
+    ``relative`` errors are fractions of the value, others are in the channel's unit.
     """
 
     channel: str
@@ -123,7 +124,7 @@ TERMS = tuple(
 CALIBRATION = nuisance(
     ParameterGroup('calibration', tuple(term.channel for term in TERMS), ('std',) * len(TERMS))
 )
-"""The same as parameters."""
+"""`TERMS` as parameters."""
 
 
 @cache
@@ -146,22 +147,21 @@ class TowErrors:
     rows : (n,) int array
         Indices into all windows.
     present : (n, k) bool array
-        True if a window has the channel; all else is 0 where it has not.
+        True if a window has the channel; other arrays are 0 if it has not.
     noise : (n, k) array
-        Std of the single reading's own error as stated, 1 where absent.
+        Stated std of the error of the single reading; 1 if absent.
     numbers : (n, k) array
-        Number of independent readings of each: all windows of a state share what
-        changes with the state.
+        Number of independent readings. It is below one if windows of a state share an offset.
     inputs : (n, k, 4) array
-        Change by one std in warp lengths, speed and rest of this window.
+        Change of the reading by one std in warp lengths, speed and settling of this window.
     input_std : (n, 3) array
-        The std of warp lengths (m) and speed (m/s).
+        Std of warp lengths (m) and speed (m/s).
     calibration : (n, k, p) array
-        Change by one std of each of `TERMS`.
+        Change of the reading by one std of each of `TERMS`.
     input_calibration : (n, 3, p) array
-        By how much one std of each of `TERMS` makes warp lengths and speed read too large.
+        Change of the measured warp lengths and speed by one std of each of `TERMS`.
     model : (n, k, m) array
-        Change by one std of each of `Scheme.model_errors`.
+        Change of the reading by one std of each of `Scheme.model_errors`.
     """
 
     rows: IntArray
@@ -176,7 +176,7 @@ class TowErrors:
 
 
 def in_all_channels(linear: Linearised, values: FloatArray) -> FloatArray:
-    """Rows of a window's channels scattered among all channels, 0 for those it has not.
+    """Return values of a window's channels as rows among all channels, 0 for missing channels.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def in_all_channels(linear: Linearised, values: FloatArray) -> FloatArray:
 
 
 def tow_errors(linearised: Sequence[Linearised], scheme: Scheme) -> tuple[TowErrors, ...]:
-    """Errors of all windows, tow by tow.
+    """Return the errors of all windows, tow by tow.
 
     Parameters
     ----------
@@ -270,23 +270,23 @@ def _own_std(
     window = linear.window
     if name not in window.means or (name in MEASURED and name not in linear.channels):
         return 1.0
-    # All windows of a state share what changes with it, so their number must not wear it down.
+    # All windows of a state share its offset. Times their number, their mean keeps its variance.
     state_std = CHANNELS[name].state_std(window.bias[name], scheme.state_share)
     changing = in_state[window.state] * state_std**2
-    # Some thirty readings tell their own noise badly: one that seems small is small by chance.
+    # About thirty readings measure their noise badly; a small value may be chance.
     noise = window.own_noise(name, usual[group_of(name)])
     return float(np.sqrt(noise**2 + changing))
 
 
 def _unsettled(linear: Linearised, in_state: Mapping[int, int], scheme: Scheme) -> FloatArray:
     depth = linear.window.means.get('net_depth', 0.0)
-    # The windows of one state have the same unsettled motion.
+    # Windows of one state settle together, so their number is a factor as in `_own_std`.
     size = scheme.unsettled * abs(depth) * np.sqrt(in_state[linear.window.state])
     return in_all_channels(linear, size * linear.slow)
 
 
 def _calibration(linear: Linearised, scheme: Scheme) -> FloatArray:
-    # An input read too large makes the prediction differ, not the reading.
+    # An input that reads too large changes the prediction, not the reading.
     columns = -in_all_channels(linear, linear.by_inputs) @ _of_inputs(linear, scheme)
     for column, term in enumerate(TERMS):
         if term.channel in linear.channels:

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Duration of manoeuvres, and the order of a trial.
 
-Warp lengths rise through a trial, so that each metre is paid out once. While warp runs out, the
-gear goes through the water that much slower than the ship; so she first goes faster, lest the
-boards lose their lift.
+Warp lengths rise through a trial, so that each metre is paid out once. While warp is paid out,
+the gear is slower than the ship by the speed of the warp. So the ship first speeds up, to keep the
+lift of the boards.
 """
 
 import math
@@ -21,11 +21,11 @@ from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.channels import CHANNELS
 
 STEADY_SHARE = 0.25
-"""Part of the drift that a window may have which a planned one does have: readings' noise makes
-it seem more or less."""
+"""Drift of a planned window over the largest drift of a steady window. The margin is for noise,
+which makes the drift seem larger or smaller."""
 
 STEP_MINUTES = 0.5
-"""To this a leg is rounded up: what one can say to a bridge."""
+"""Legs are rounded up to a multiple of this, which is easy to follow on a bridge."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class VesselLimits:
 
 
 def vessel_limits(gear: GearRecord, manoeuvres: Sequence[Manoeuvre]) -> VesselLimits:
-    """Limits by a gear file, between the speeds of these manoeuvres."""
+    """Return the limits of a gear file, with the range of speeds of these manoeuvres."""
     speeds = [manoeuvre.speed for manoeuvre in manoeuvres]
     return VesselLimits(
         gear.winch.max_speed_m_s,
@@ -65,8 +65,8 @@ def vessel_limits(gear: GearRecord, manoeuvres: Sequence[Manoeuvre]) -> VesselLi
 class Leg:
     """Leg: one manoeuvre of a trial.
 
-    ``veering_minutes`` at ``veering_speed`` come first where warp runs out from a slower tow;
-    then ``minutes`` to change, settle and take the windows.
+    If warp is paid out, ``veering_minutes`` at ``veering_speed`` (m/s) come first. Then
+    ``minutes`` pass to change, settle and take the windows.
     """
 
     manoeuvre: Manoeuvre
@@ -81,8 +81,9 @@ class Leg:
 
 
 def winch_time(vessel: VesselLimits, metres: float) -> float:
-    """Time (s) to veer or haul so many metres, from rest to rest."""
+    """Return the time (s) in which winches veer or haul a length (m), from rest to rest."""
     most, speed = vessel.winch_acceleration, vessel.winch_speed
+    # Short changes end before the winch reaches its full speed.
     if metres <= speed**2 / most:
         return 2.0 * math.sqrt(metres / most)
     return metres / speed + speed / most
@@ -92,9 +93,18 @@ def winch_time(vessel: VesselLimits, metres: float) -> float:
 class Rest:
     """Settling of a gear in a steady state.
 
-    Tension and spread settle soon; net and doors sink or rise together for minutes. ``net_depth``
-    (m) of the net, ``decay`` (s) of its slowest motion to 1/e, and the ``drift`` (m) in one window
-    of ``window`` (s) at which that counts as steady.
+    Tension and spread settle quickly; net and doors sink or rise together for minutes.
+
+    Attributes
+    ----------
+    net_depth
+        Depth of the net, m.
+    decay
+        Time in which the slowest motion decays to 1/e, s.
+    drift
+        Drift of the depth in a window below which the window counts as steady, m.
+    window
+        Length of a window, s.
     """
 
     net_depth: float
@@ -108,27 +118,28 @@ class Rest:
         Parameters
         ----------
         change
-            By how much (m) the depth is to change.
+            Whole change of the depth, m.
         moving
-            Time (s) that ship and winches take for it; in that the gear follows already.
+            Time in which ship and winches make the change, s; the gear already follows then.
         since
-            Time (s) since they have done it.
+            Time since its end, s.
         """
+        # A first-order lag with a ramp as input.
         shrunk = self.decay / moving * -math.expm1(-moving / self.decay) if moving else 1.0
         return abs(change) * shrunk * math.exp(-since / self.decay)
 
     def time(self, left: float) -> float:
-        """Time (s) until the net, with so much (m) to come, drifts by no more than that."""
+        """Return the time (s) until a net with a remaining change ``left`` (m) is steady."""
         first = left * -math.expm1(-self.window / self.decay)
         return self.decay * math.log(max(first / self.drift, 1.0))
 
     def to_come(self, options: WindowOptions) -> float:
-        """Assumed departure from rest of a window with that drift, m of depth."""
+        """Return the departure (m of depth) from equilibrium that a window with this drift has."""
         return self.drift * options.slow_s / self.window
 
 
 def rest_of(candidate: TowableManoeuvre, options: WindowOptions) -> Rest:
-    """Settling of the gear at a candidate, by the windows' criterion."""
+    """Return how the gear settles at a candidate, by the criterion of steady windows."""
     linear = candidate.part
     depths = {
         name: float(value)
@@ -143,9 +154,9 @@ def rest_of(candidate: TowableManoeuvre, options: WindowOptions) -> Rest:
 
 @cache
 def holding_time(manoeuvre: Manoeuvre, options: WindowOptions, rest: float = 0.0) -> float:
-    """Time (s) for which a steady state is held until all its windows are taken.
+    """Return the time (s) for which a steady state is held until all its windows are taken.
 
-    Windows lie on a grid of blocks: one block more, since the change ends within one.
+    Windows lie on a grid of blocks. A change ends within a block, which is lost.
 
     Parameters
     ----------
@@ -166,10 +177,10 @@ def holding_time(manoeuvre: Manoeuvre, options: WindowOptions, rest: float = 0.0
 
 
 def arranged(manoeuvres: Sequence[Manoeuvre]) -> tuple[Manoeuvre, ...] | None:
-    """Order manoeuvres: warp lengths rising, at each length speeds falling; None if impossible.
+    """Order manoeuvres by rising warp length, and at each length by falling speed.
 
-    What is done twice comes again after another manoeuvre of that length, for a state that goes
-    on gives no more windows. None where nothing can come in between.
+    A state that goes on gives no further windows. So another manoeuvre of the same length comes
+    between two equal ones; the result is None if there is none.
     """
     ordered: list[Manoeuvre] = []
     for length in sorted({manoeuvre.length for manoeuvre in manoeuvres}):
@@ -179,7 +190,7 @@ def arranged(manoeuvres: Sequence[Manoeuvre]) -> tuple[Manoeuvre, ...] | None:
             free = [manoeuvre for manoeuvre in left if manoeuvre != last]
             if not free:
                 return None
-            # The one that is left most often first: else it would meet itself at the end.
+            # The most frequent one goes first; otherwise copies of it would be left at the end.
             chosen = max(
                 free, key=lambda manoeuvre: (left[manoeuvre], manoeuvre.equal, manoeuvre.speed)
             )
@@ -198,7 +209,7 @@ class Timetable:
     options
         Criteria of a steady window.
     candidates
-        All manoeuvres that are asked for, but for the first.
+        All manoeuvres that `legs` is called with; the first one may be missing.
     """
 
     def __init__(
@@ -221,7 +232,7 @@ class Timetable:
         Parameters
         ----------
         manoeuvres
-            The gear is at rest in the first when it begins.
+            The gear is steady in the first one at the start.
         first_depth
             Depth (m) of the net in the first, if that is not among the candidates.
         """

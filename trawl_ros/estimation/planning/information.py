@@ -1,11 +1,11 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Information matrices of windows: of the coefficients, with shared errors as unknowns.
+"""Information matrices of windows, with the errors that windows share as unknowns.
 
-Information of independent windows adds up when that which they share is counted among the
-unknowns: errors of calibration of the tow and of the model, in std, before the coefficients, in
-std of their prior. It is the estimator's own account (`trawl_ros.estimation.fit.nuisance`), in a
-form in which one may add and leave out windows at little cost.
+Windows share errors of calibration of the tow and errors of the model. With these among the
+unknowns, the information of windows adds up, so a plan adds or drops a window at little cost.
+The order is calibration, model, coefficients; each is in units of its prior std. The estimator
+computes the same (`trawl_ros.estimation.fit.nuisance`).
 """
 
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ from trawl_ros.estimation.least_squares.information import joined
 
 
 def unknowns(prior: ParameterVector, options: EstimatorOptions) -> ParameterVector:
-    """Unknowns of a tow: errors of calibration, then of the model, then the coefficients."""
+    """Return the unknowns of a tow: errors of calibration, errors of the model, coefficients."""
     return CALIBRATION.followed_by(Scheme.of(options).model_errors).followed_by(prior)
 
 
@@ -34,14 +34,14 @@ def information_of(
     options: EstimatorOptions,
     scales: Sequence[float] = AS_STATED,
 ) -> FloatArray:
-    """Information matrix, square in the `unknowns`, of windows in one steady state.
+    """Return the information matrix (u, u) on the u `unknowns` of windows in one steady state.
 
     Parameters
     ----------
     linearised
-        All windows of the state, as they would be.
+        All windows expected in the state.
     prior
-        Its std is the coefficients' scale.
+        Prior of the coefficients, whose std is their scale.
     options
         Scheme of the errors.
     scales
@@ -49,6 +49,7 @@ def information_of(
     """
     fit = Fit(tuple(linearised), linearised[0].at, tuple(scales), prior, options)
     (errors,) = fit.errors
+    # Whiten the columns by errors of readings and of measured inputs, which no window shares.
     std = np.where(errors.present, errors.noise * np.array(scales)[GROUP_OF], 1.0)
     variance = std[:, :, None] ** 2 * np.eye(std.shape[1])
     root = np.linalg.cholesky(variance + errors.inputs @ errors.inputs.transpose(0, 2, 1))
@@ -59,8 +60,8 @@ def information_of(
 
 
 def information_before(prior: ParameterVector, options: EstimatorOptions) -> FloatArray:
-    """Prior information matrix: of calibration, of the model's errors, and of the coefficients."""
-    # As in `know`: where neither data nor prior say anything, a std of a million.
+    """Return the prior's information matrix (u, u) on the `unknowns`."""
+    # Without a prior, a std of a million keeps the matrix invertible.
     among = unknowns(prior, options)
     weights = np.ones(len(among))
     weights[among.slice_of('coefficients')] = max(options.prior_weight, 1e-12)
@@ -68,18 +69,20 @@ def information_before(prior: ParameterVector, options: EstimatorOptions) -> Flo
 
 
 def information_in(fit: Fit) -> FloatArray:
-    """Information matrix of a fit: calibration of its newest tow, model errors, and coefficients.
+    """Return the information matrix (u, u) of a fit on the `unknowns` of its newest tow.
+
+    Calibration of its other tows is eliminated.
 
     Parameters
     ----------
     fit
-        With one window at least.
+        Fit of at least one window.
     """
     elimination = fit.elimination
     *others, newest = elimination.tows
     among = unknowns(fit.prior, fit.options)
     board = among.slice_of('coefficients')
-    # The estimator has the coefficients first, then the model's errors, then those of calibration.
+    # The order of the estimator is coefficients, model, calibration.
     order = np.concatenate(
         (
             np.arange(len(among) - len(CALIBRATION), len(among)),
@@ -100,9 +103,9 @@ def information_in(fit: Fit) -> FloatArray:
 
 
 def covariance_from(information: FloatArray, prior: ParameterVector) -> FloatArray:
-    """Covariance (q, q) of the coefficients by an information matrix."""
+    """Return the covariance (q, q) of the coefficients from an information matrix (u, u)."""
     root = np.linalg.cholesky(information)
-    # The lower right block of the inverse needs the lower right block of the factor alone.
+    # Information = L Lᵀ, so the last block of its inverse needs only the last block of L.
     number = len(prior)
     inverse = solve_triangular(root[-number:, -number:], np.eye(number), lower=True)
     covariance: FloatArray = inverse.T @ inverse * np.outer(prior.std, prior.std)
@@ -115,7 +118,7 @@ def fitted_covariance(
     prior: ParameterVector,
     options: EstimatorOptions,
 ) -> FloatArray:
-    """Posterior covariance (q, q) that the estimator would give with these windows."""
+    """Return the posterior covariance (q, q) that the estimator would give with these windows."""
     numbered = tuple(
         replace(linear, window=replace(linear.window, index=index))
         for index, linear in enumerate(linearised)

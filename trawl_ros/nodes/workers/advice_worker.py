@@ -28,7 +28,7 @@ class AdviceWorker(Worker[object]):
     adviser
         Nobody else may use it, or its predictor, from now on.
     believed
-        Coefficients (12,) before the first window.
+        Coefficients (q,) before the first window.
     share
         Part of a core that solving manoeuvres may take.
     at_rest

@@ -21,7 +21,7 @@ class ReportWriter:
     gear
         The gear as the model has it.
     truth
-        Coefficients (12,) that made the data, where they are known.
+        Coefficients (q,) that made the data, where they are known.
     folder
         For the report; none is written where None.
     motion

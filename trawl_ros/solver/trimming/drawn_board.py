@@ -85,7 +85,7 @@ class DrawnBoard:
 
     @property
     def coefficients(self) -> FloatArray:
-        """Coefficients (q,) in the order of eq. 36."""
+        """Coefficients (q,) in the order of their law."""
         return self.model.coefficients
 
     @property
