@@ -316,12 +316,14 @@ class Watch:
             # An onset by boards that were not close is none.
             self._bank.forget()
         self.compared += 1
-        away = moved @ (self.learned - self.start.coefficients)
+        learned = self.learned
+        assert learned is not None
+        away = moved @ (learned - self.start.coefficients)
         self.away = float(np.max(np.abs(away) / rows.model))
         if self.learns:
             self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
         innovations, std = np.full((2, len(WATCHED)), np.nan)
-        innovations[rows.channels] = link.white
+        innovations[rows.channels] = link.innovations
         std[rows.channels] = np.linalg.norm(link.root, axis=1)
         return WatchedStretch(end_ns, innovations, std, marks, (), why_not)
 
