@@ -8,7 +8,7 @@ import pytest
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
-from trawl_ros.diagnosis.onset.monitor import NEARER, NOT_CLOSE, OnsetMonitor
+from trawl_ros.diagnosis.onset.monitor import NEARER, NOT_CLOSE, OnsetMonitor, OnsetOptions
 from trawl_ros.diagnosis.onset.part import LIVE, SETTLING
 from trawl_ros.diagnosis.onset.watch import JUST_BEGUN, LEARNS, REST
 from trawl_ros.effects.registry import catalogue
@@ -81,6 +81,18 @@ def test_a_gap_is_told_and_the_tow_is_watched_again_behind_it(monitor, onset_sam
     assert any('silent' in reason for reason in reasons)
     assert monitor.why_not == ''
     assert monitor.watched > 5
+
+
+@pytest.mark.slow
+def test_a_long_tow_is_watched_on_with_its_last_stretches(onset_gear, onset_samples):
+    std = board_prior(onset_gear).std
+    known = Knowledge(onset_gear.board.coefficients.array(), np.diag((0.2 * std) ** 2))
+    told, options = [], OnsetOptions(longest=18, again=6)
+    monitor = OnsetMonitor(onset_gear, known, options, effects=FEW, on_stretch=told.append)
+    assert [found for sample in onset_samples(16) for found in monitor.feed(sample)] == []
+    assert len(monitor._watch) < len(told) - 2
+    first = next(place for place, one in enumerate(told) if not one.why_not)
+    assert len([one for one in told[first:] if one.why_not]) <= 2 * REST
 
 
 def test_a_gear_that_the_model_cannot_tow_is_told(monitor, onset_samples):

@@ -31,7 +31,7 @@ def watched(size, stretches=12, begin=0, manoeuvre=None):
         link = chain.append(covariance[own, : own.stop], columns[own], residual)
         unrest = float(number == manoeuvre)
         marks = bank.step(link, np.repeat(lasting[None], stretches + 1, axis=0), unrest)
-        seen.append((link.white, marks[number, :, 0]))
+        seen.append((link.innovations, marks[number, :, 0]))
     return seen, {TABLE.candidates[one.candidate].name: one for one in bank.best()}
 
 

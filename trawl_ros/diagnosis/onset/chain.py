@@ -43,15 +43,23 @@ class Link:
     back : (r, n) array
         Rows of the factor L for the n rows before.
     root : (r, r) array
-        Rows of L for the stretch itself, wide enough that no innovation exceeds `MAX_INNOVATION`.
+        Rows of L for the stretch itself, by Huber's weights: wider for readings far off.
     white : (r,) array
-        Innovations.
+        Rows of L⁻¹ y.
+    weights : (r,) array
+        Weights by which no innovation exceeds `MAX_INNOVATION`.
     """
 
     place: Slice
     back: FloatArray
     root: FloatArray
     white: FloatArray
+    weights: FloatArray
+
+    @property
+    def innovations(self) -> FloatArray:
+        """Innovations (r,), none beyond `MAX_INNOVATION`."""
+        return self.weights * self.white
 
     def whitened(self, rows: FloatArray) -> FloatArray:
         """Return rows (r, ...) in units of their errors."""
@@ -71,7 +79,7 @@ class Chain:
     Attributes
     ----------
     white : (n,) array
-        Innovations of all rows.
+        All rows of L⁻¹ y.
     """
 
     def __init__(self, belief: Belief) -> None:
@@ -97,9 +105,10 @@ class Chain:
         own += RELATIVE_JITTER * np.diag(np.diag(covariance[:, n:]))
         root = cholesky(own, lower=True)
         away = solve_triangular(root, residual - back @ self.white, lower=True)
-        # A reading far off counts as one at the edge of errors that large.
-        far = np.maximum(np.abs(away) / MAX_INNOVATION, 1.0)
-        link = Link(slice(n, n + r), back, root * far, away / far)
+        # A reading far off moves the belief as one at the edge does: its variance counts as far
+        # times as large (Huber). As evidence it counts as the edge too.
+        far = np.sqrt(np.maximum(np.abs(away) / MAX_INNOVATION, 1.0))
+        link = Link(slice(n, n + r), back, root * far, away / far, 1.0 / far)
         self._columns = np.vstack((self._columns, link.whitened(columns - back @ self._columns)))
         self._root = np.block([[self._root, np.zeros((n, r))], [back, link.root]])
         self.white = np.append(self.white, link.white)

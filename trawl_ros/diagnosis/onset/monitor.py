@@ -204,7 +204,7 @@ class OnsetMonitor:
         self._on_stretch(stretch)
         if stretch.evidence:
             yield from self._judge(stretch.end_ns, stretch.evidence)
-        if self._watch.lost:
+        if self._watch.lost or len(self._watch) > 2 * self.options.longest:
             self._begin_again()
         oldest_ns = self._watch.part.begin_ns(0)
         while self._samples and self._samples[0].stamp < oldest_ns:

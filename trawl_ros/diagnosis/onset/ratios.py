@@ -121,8 +121,8 @@ class RatioBank:
             own[:, late:] -= np.tensordot(link.back[:, place], marks[:, :-late], 1)
         found = link.whitened(own)
         self._marks.append((link.place, found))
-        marks = np.moveaxis(found, 1, 0)
-        self.products += np.einsum('wrp,r->wp', marks, link.white)
+        marks = np.moveaxis(found, 1, 0) * link.weights[:, None]
+        self.products += np.einsum('wrp,r->wp', marks, link.innovations)
         self.squares += np.matmul(np.swapaxes(marks, 1, 2), marks)
         return marks
 

@@ -323,7 +323,7 @@ class Watch:
         if self.learns:
             self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
         innovations, std = np.full((2, len(WATCHED)), np.nan)
-        innovations[rows.channels] = link.white
+        innovations[rows.channels] = link.innovations
         std[rows.channels] = np.linalg.norm(link.root, axis=1)
         return WatchedStretch(end_ns, innovations, std, marks, (), why_not)
 
