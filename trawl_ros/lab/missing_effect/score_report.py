@@ -95,10 +95,10 @@ def reliability_figure(
             own.plot([part.mean, part.mean], [low, high], color=MEASURED, linewidth=1.5)
             own.plot(part.mean, part.right / part.number, 'o', color=MEASURED)
             own.annotate(
-                f'{part.number}', (part.mean, part.right / part.number), (-4, 4),
-                textcoords='offset points', ha='right', fontsize=8,
+                f'{part.number}', (part.mean, low), (0, -10),
+                textcoords='offset points', ha='center', fontsize=8,
             )  # fmt: skip
-        own.set(xlim=(0.0, 1.03), ylim=(-0.03, 1.06), title=name)
+        own.set(xlim=(0.0, 1.03), ylim=(-0.09, 1.06), title=name)
         own.title.set_fontsize(9)
         quiet(own)
     figure.supxlabel('stated probability', fontsize=10)
