@@ -101,6 +101,7 @@ def test_each_scenario_begins_with_an_autotrawl_and_is_scored_for_minutes(name):
     assert scenario.autotrawled
     assert scenario.steered
     assert scenario.duration_s > SCORED_FROM_S + 240.0
+    assert len(scenario.effect_set.effects) == len(scenario.record.effects)
 
 
 def test_a_class_works_the_winches(short):
