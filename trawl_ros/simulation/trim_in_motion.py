@@ -32,8 +32,8 @@ from trawl_ros.solver.trim import trim
 from trawl_ros.solver.trimming.held_gear import coarsest_model
 from trawl_ros.solver.trimming.over_range import BOUND_TOLERANCE_M, hole_limits
 
-FALLEN = 90.0
-"""Lean (deg) of a board that fell, and of one whose motion cannot be computed."""
+FALLEN_LEAN_DEG = 90.0
+"""Lean of a board that fell, and of one whose motion cannot be computed."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +88,8 @@ class MotionTrimOptions:
 
 OPTIONS = MotionTrimOptions()
 GLANCE_S = 5.0
+"""Time between two looks at the boards, s."""
+
 CALM_PERIOD_S, SWELL_PERIOD_S = 0.25, 0.1
 """Half of the solver's step, s."""
 
@@ -209,9 +211,13 @@ def _judged(model: GearModel, wish: _Wish, coordinates: FloatArray) -> Judged:
             if beyond < BOUND_TOLERANCE_M:
                 break
         else:
-            return 2.0 * FALLEN + options.beyond_limits_deg_m * beyond, FALLEN, None
+            return (
+                2.0 * FALLEN_LEAN_DEG + options.beyond_limits_deg_m * beyond,
+                FALLEN_LEAN_DEG,
+                None,
+            )
     except NoSteadyState:
-        return 4.0 * FALLEN, FALLEN, None
+        return 4.0 * FALLEN_LEAN_DEG, FALLEN_LEAN_DEG, None
     points = np.clip(points, -limits, limits)
     model = model.with_board(points=points)
     unknown = model.with_coefficients(np.array(model.gear.identification.start))
@@ -253,18 +259,21 @@ def _lean(model: GearModel, wish: _Wish) -> float:
     parts = [
         lean
         for seed in options.calm_seeds
-        for lean in _leans(model, wish, seed, options.calm_s, CALM_PERIOD_S)
+        for lean in _leans(model, wish, seed, options.calm_s, swell=False)
     ]
-    parts += _leans(model, wish, options.swell_seed, options.swell_s, SWELL_PERIOD_S)
+    parts += _leans(model, wish, options.swell_seed, options.swell_s, swell=True)
     return float(np.sqrt(np.mean(np.square(parts))))
 
 
-def _leans(model: GearModel, wish: _Wish, seed: int, duration: float, period: float) -> list[float]:
+def _leans(
+    model: GearModel, wish: _Wish, seed: int, duration: float, *, swell: bool
+) -> list[float]:
     """Return the largest lean (deg) of each part of a tow under random commands."""
-    options, draws, sea = wish.options, np.random.default_rng(seed), CALM
-    if period == SWELL_PERIOD_S:
+    options, draws = wish.options, np.random.default_rng(seed)
+    sea, period = CALM, CALM_PERIOD_S
+    if swell:
         heave = partial(irregular_heave, options.swell_height_m, options.swell_period_s)
-        sea = Sea(heave=heave(draws, begin=10.0, growth=20.0))
+        sea, period = Sea(heave=heave(draws, begin=10.0, growth=20.0)), SWELL_PERIOD_S
     commands = RandomCommands(draws, wish.limits)
     warp, speed = wish.middle
     parts = np.zeros(math.ceil(duration / options.part_s))
@@ -276,9 +285,9 @@ def _leans(model: GearModel, wish: _Wish, seed: int, duration: float, period: fl
             for _ in range(round(GLANCE_S / period)):
                 now = simulation.advance()
             upward = np.real(now.motion.state.board_rotations[:, 2, 2]).min()
-            lean = min(math.degrees(math.acos(np.clip(upward, -1.0, 1.0))), FALLEN)
+            lean = min(math.degrees(math.acos(np.clip(upward, -1.0, 1.0))), FALLEN_LEAN_DEG)
             part = int(time // options.part_s)
             parts[part] = max(parts[part], lean)
     except (NoSteadyState, StepFailed):
-        parts[parts == 0.0] = FALLEN
+        parts[parts == 0.0] = FALLEN_LEAN_DEG
     return parts.tolist()

@@ -63,7 +63,7 @@ def finding(
         alike=tuple(
             table.candidates[one.candidate].name
             for weighed, one in others
-            # A candidate that fits no worse cannot be told apart, however many values it has.
+            # A candidate that fits as well is listed too, however many values it has.
             if weighed > most - SIMILAR_EVIDENCE or one.ratio >= best.ratio
         ),
         rarity=evidence[0].rarity,

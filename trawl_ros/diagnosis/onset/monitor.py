@@ -78,7 +78,7 @@ class OnsetOptions:
         Stretches until all of a change is tried again.
     poorly_known, learning
         Std of boards, in that of the gear file's prior (geometric mean), beyond which the states
-        of the gear cannot be told apart; and stretches through which boards are learned then.
+        of the gear look alike; and stretches in which boards are learned after that.
     """
 
     window: int = 60

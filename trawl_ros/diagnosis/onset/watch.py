@@ -275,7 +275,7 @@ class Watch:
             self._belief = errors.belief(layout_of(tow, self._towed, 1.0))
         if self._chain is None:
             self._chain = Chain(self._belief)
-        # What is smoothed anew changes no stretch that has been judged.
+        # Readings are smoothed again, but stretches that were judged stay as they are.
         self._manoeuvres += manoeuvres(tow)[len(self._manoeuvres) :]
         unrest = unrest_of(self._manoeuvres)
         rows = residual_rows(
