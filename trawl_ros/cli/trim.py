@@ -50,7 +50,8 @@ def _kinds(
 @click.option(
     '--inclination',
     type=Number(-45.0, 60.0),
-    help='Wanted inclination δ of the doors, deg; below 0 they lean inward.',
+    help='Wanted inclination δ of the doors, deg: above 0 the upper edge leans inward, below 0 '
+    'outward.',
 )
 @click.option(
     '--pitch',
@@ -120,6 +121,8 @@ def command(
     GEAR is a gear file or the name of a gear of the package. The search starts from the points of
     the file and changes them as little as possible. The result is printed in the format of a gear
     file; only --out writes a file.
+
+    The printed δ has no sign; 'upper edge outward' is added if the doors lean that way.
 
     Instead of angles you can give --spread and --depth of the doors, measured at --warp and
     --speed. The command then finds the nearest angles. With --warps or --speeds it chooses all
@@ -350,11 +353,11 @@ def points_lines(points: FloatArray) -> tuple[str, ...]:
 def state_line(warp: float, speed: float, steady: 'SteadyState') -> str:
     """Describe a steady state at a warp length (m) and speed (m/s)."""
     observables: Observables = steady.observables
-    # δ has no sign; the roll of the port board gives the direction of its lean.
-    inward = ' inward' if observables.port_roll < 0.0 else ''
+    # δ has no sign. Roll is positive with the top to starboard: inward for the port board.
+    edge = ', upper edge outward' if observables.port_roll < 0.0 else ''
     return (
         f'at {warp:g} m and {speed:g} m/s: α {np.degrees(observables.port_attack):.1f}°, '
-        f'δ {np.degrees(observables.port_inclination):.1f}°{inward}, '
+        f'δ {np.degrees(observables.port_inclination):.1f}°{edge}, '
         f'β {np.degrees(observables.port_slip):.1f}°, '
         f'spread {observables.door_spread:.1f} m, door depth {observables.door_depth:.1f} m, '
         f'tension {observables.warp_tension / 1e3:.1f} kN; the slowest motion settles in '
