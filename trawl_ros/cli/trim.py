@@ -92,7 +92,7 @@ def _kinds(
 @click.option(
     '--in-motion',
     is_flag=True,
-    help='Choose the points so that the boards stand while they are hauled, veered and turned over '
+    help='Choose the points so that the doors stand while they are hauled, veered and turned over '
     'the range of --warps and --speeds; takes minutes on all cores.',
 )
 @click.option('--out', type=FILE, help='New file for a copy of GEAR with the result.')
@@ -116,13 +116,14 @@ def command(
     out: Path | None,
     units: DisplayUnits,
 ) -> None:
-    """Find fastening points that give the boards of GEAR the wanted angles.
+    """Find fastening points that give the doors of GEAR the wanted angles.
 
     GEAR is a gear file or the name of a gear of the package. The search starts from the points of
     the file and changes them as little as possible. The result is printed in the format of a gear
     file; only --out writes a file.
 
-    The printed δ has no sign; 'upper edge outward' is added if the doors lean that way.
+    The printed δ has no sign; 'upper edge outward' is added if the doors lean that way. For another
+    door use `trawl gear set-door`.
 
     Instead of angles you can give --spread and --depth of the doors, measured at --warp and
     --speed. The command then finds the nearest angles. With --warps or --speeds it chooses all
@@ -131,7 +132,7 @@ def command(
 
     With --in-motion every rigging that is tried has the wanted angles in the middle of the range
     and is towed for 88 minutes under random commands, in calm water and in swell. The rigging whose
-    boards lean least is chosen. Give the result to the command again to search further.
+    doors lean least is chosen. Give the result to the command again to search further.
     """
     from trawl_ros.gear.edit import WRITTEN_DECIMALS, require_new, write_changed
     from trawl_ros.gear.load import load_gear
