@@ -109,9 +109,9 @@ def test_each_point_of_a_range_is_usable_and_the_attitude_changes_little(model: 
 
 
 @pytest.mark.slow
-def test_boards_whose_upper_edge_leans_outward_go_deeper(model: GearModel) -> None:
+def test_boards_whose_upper_edge_leans_further_inward_go_less_deep(model: GearModel) -> None:
     depths = []
-    for lean in (-6.0, 12.0):
+    for lean in (12.0, 20.0):
         found = trim_over_range(
             model,
             attack=np.radians(20.0),
@@ -120,8 +120,10 @@ def test_boards_whose_upper_edge_leans_outward_go_deeper(model: GearModel) -> No
             speeds=(2.2, 2.6),
         )
         assert found.usable == 2
-        depths.append(found.found[0].steady.observables.door_depth)
-    assert depths[0] > 1.2 * depths[1]
+        seen = found.found[0].steady.observables
+        assert np.degrees(seen.port_roll) == pytest.approx(lean, abs=2.0)
+        depths.append(seen.door_depth)
+    assert depths[1] < 0.95 * depths[0]
 
 
 @pytest.mark.slow
