@@ -208,7 +208,7 @@ def run(quick: bool) -> Findings:
     size = SMALL if quick else FULL
     gear = load_gear('kaifuha')
     if quick:
-        gear = gear.changed('netting', around=12)
+        gear = gear.changed('netting', around=24)
     bowed = gear.changed('netting', bowing_pressure_pa=BOWING_PRESSURE_PA)
     taut = _smooth(build_model(bowed), size)
     model = build_model(gear)
