@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS, TERMS
+from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS, TERMS, model_errors
 from trawl_ros.estimation.fit.estimate import (
     Estimate,
     Innovation,
@@ -94,7 +94,7 @@ def posterior_estimate(
 
 def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
     """Return the calibration errors by tow and channel, inputs included."""
-    share = fit.scheme.tow_share
+    share = fit.options.tow_share
     biases = []
     roots = tow_roots(fit.elimination, fit.posterior.root)
     for tow, every in zip(fit.elimination.tows, roots, strict=True):
@@ -106,9 +106,7 @@ def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
                 continue
             size = np.array(
                 [
-                    share * term.std * (float(np.mean(means)) if term.relative else 1.0)
-                    if term.channel == name
-                    else 0.0
+                    share * term.size(float(np.mean(means))) if term.channel == name else 0.0
                     for term in TERMS
                 ]
             )
@@ -129,9 +127,9 @@ def net_factors(fit: Fit) -> tuple[NetFactor, ...]:
     """Return the factors on drag and weight of the net, if they are estimated along."""
     if fit.net is None:
         return ()
-    std = fit.scheme.net_std
+    std = fit.options.net_std
     root = shared_root(fit.elimination, fit.posterior.root)[len(fit.coefficients) :]
-    (rows,) = fit.scheme.model_errors.blocks('net')
+    (rows,) = model_errors(fit.options).blocks('net')
     return tuple(
         NetFactor(what, float(value), float(known * np.linalg.norm(root[row])), float(known))
         for what, value, known, row in zip(('drag', 'weight'), fit.net, std, rows, strict=True)

@@ -14,13 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
-from trawl_ros.estimation.fit.error_terms import GROUPS, MODEL_ANGLE, MODEL_FRACTION, group_of
+from trawl_ros.estimation.fit.error_terms import GROUPS, channel_errors, group_of, model_std
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, channel_errors
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
-from trawl_ros.records.channels import CHANNELS
 from trawl_ros.solver.motion.parameters import NET
 
 START_STD_M = 10.0
@@ -145,11 +144,8 @@ def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> 
     for column, group in enumerate(GROUPS, start=layout.of_model.start):
         for row, name in enumerate(layout.channels):
             if group_of(name) == group:
-                angle = CHANNELS[name].unit == 'rad'
-                values = np.abs(np.nan_to_num(linear.values[:, row]))
-                total[:, row, column] = layout.model * (
-                    MODEL_ANGLE if angle else MODEL_FRACTION * values
-                )
+                values = np.nan_to_num(linear.values[:, row])
+                total[:, row, column] = layout.model * model_std(name, values)
     total[..., layout.of_starts] = linear.by_starts * START_STD_M
     total[..., layout.of_errors] = linear.by_errors
     for knots, own, _ in linear.tow.inputs.knot_places:

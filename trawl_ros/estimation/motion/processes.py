@@ -13,17 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.estimation.fit.error_terms import (
-    GROUPS,
-    MODEL_ANGLE,
-    MODEL_FRACTION,
-    Scheme,
-    group_of,
-)
+from trawl_ros.estimation.fit.error_terms import GROUPS, group_of, model_std
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.records.channels import CHANNELS
 
-STATE_SHARE = Scheme.state_share
+STATE_SHARE = EstimatorOptions.state_share
 """Part of a channel's bias that changes from one state of a tow to the next where the channel table
 has nothing measured; as for steady windows."""
 
@@ -58,7 +53,7 @@ class ErrorSizes:
     drift
         On the noise of a single reading in the channel table: std of the sensor's process.
     model
-        On `MODEL_FRACTION` of the value, or `MODEL_ANGLE`: std of the model's process.
+        On `model_std`: std of the model's process.
     state
         On `Channel.state_std`, as for steady windows: std of the process that changes with states.
     log
@@ -208,26 +203,25 @@ def group_rows(tow: MovingTow, predicted: FloatArray, noise: FloatArray) -> list
         own = np.array([name == group for name in groups], dtype=bool)
         stretches, channels = np.nonzero(there & own)
         values = np.abs(predicted[stretches, channels])
-        rows = [CHANNELS[tow.channels[c]] for c in channels]
-        angle = any(CHANNELS[tow.channels[c]].unit == 'rad' for c in np.flatnonzero(own))
+        names = [tow.channels[c] for c in channels]
         found.append(
             GroupRows(
                 stretches,
                 channels,
                 tow.middles[stretches],
                 noise[stretches, channels],
-                np.array([row.noise for row in rows]),
-                np.full(len(values), MODEL_ANGLE) if angle else MODEL_FRACTION * values,
-                np.array(
-                    [
-                        channel.state_std(channel.bias_std(value), STATE_SHARE)
-                        for channel, value in zip(rows, values, strict=True)
-                    ]
-                ),
+                np.array([CHANNELS[name].noise for name in names]),
+                model_std(names[0], values) if names else values,
+                np.array([_state_std(*one) for one in zip(names, values, strict=True)]),
                 change[stretches, channels],
             )
         )
     return found
+
+
+def _state_std(channel: str, value: float) -> float:
+    row = CHANNELS[channel]
+    return row.state_std(row.bias_std(value), STATE_SHARE)
 
 
 def changes(means: FloatArray) -> FloatArray:

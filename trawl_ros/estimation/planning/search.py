@@ -14,7 +14,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
-from trawl_ros.estimation.fit.laws import WELL_KNOWN, LawQuantities, WorkingAngles, law_quantities
+from trawl_ros.estimation.fit.laws import WELL_KNOWN, LawQuantities
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.planning.duration import (
@@ -31,10 +31,10 @@ from trawl_ros.estimation.planning.information import (
     information_before,
     information_of,
 )
+from trawl_ros.estimation.planning.law_question import LawQuestion
 from trawl_ros.estimation.planning.states import Manoeuvre, TowableManoeuvre
 from trawl_ros.estimation.planning.windows import TABLE_NOISE, imagined_windows
 from trawl_ros.estimation.windows.records import WindowOptions
-from trawl_ros.model.board_laws import BoardLaw
 
 MIN_GAIN = 1e-9
 """Smallest fall of the shortfall, or relative rise of its rate, that counts; less is rounding."""
@@ -55,7 +55,7 @@ def shortfall(quantities: LawQuantities) -> float:
 
 
 @dataclass(frozen=True)
-class DesignProblem:
+class DesignProblem(LawQuestion):
     """Problem of optimal design: what to learn, how it is estimated, and the time for it.
 
     Attributes
@@ -78,19 +78,11 @@ class DesignProblem:
         Time for the trial, min.
     """
 
-    law: BoardLaw
-    coefficients: FloatArray
     prior: ParameterVector
-    angles: WorkingAngles
-    span: FloatArray
     estimator: EstimatorOptions
     windows: WindowOptions
     vessel: VesselLimits
     minutes: float
-
-    def quantities(self, covariance: FloatArray) -> LawQuantities:
-        """Return value and slope of the laws for a covariance (q, q) of the coefficients."""
-        return law_quantities(self.law, self.coefficients, covariance, self.angles, self.span)
 
 
 class Designer:
@@ -154,8 +146,8 @@ class Designer:
     def information(self, manoeuvres: Sequence[Manoeuvre], times: float = 1.0) -> FloatArray:
         """Return the information matrix after manoeuvres, each repeated ``times`` times.
 
-        It includes the prior's, and is in units of the prior std. Its last q rows belong to the
-        coefficients; those before them belong to errors that all windows share.
+        It includes the prior's, and is in units of the prior std. Its first q rows belong to the
+        coefficients; those behind them belong to errors that all windows share.
         """
         gained = [self._gained[self._number[manoeuvre]] for manoeuvre in manoeuvres]
         return self._before + times * sum(gained)
