@@ -240,7 +240,7 @@ def test_what_speaks_against_a_fit_is_listed(tows):
     scales = {**good.estimate.noise_scales, 'roll': 2.5}
     estimate = replace(
         good.estimate, converged=False, reason='still moving', noise_scales=scales,
-        active_bounds=('a1 at its lower bound 0',),
+        values=np.concatenate((good.prior.low[:1], good.estimate.values[1:])),
     )  # fmt: skip
     feet = {'wrong unit': 'door/port/pressure is plausible in feet'}
     bad = replace(good, estimate=estimate, residuals=(coloured,), found=feet)
@@ -249,7 +249,7 @@ def test_what_speaks_against_a_fit_is_listed(tows):
     words = coloured.channel.replace('_', ' ')
     for part in (
         'Refused, wrong unit: door/port/pressure is plausible in feet.',
-        'not converged: still moving', 'a1 at its lower bound 0',
+        'not converged: still moving', f'a1 at its lower bound {good.prior.low[0]:g}',
         f'beyond what the stated errors allow in {words} (test ratio {coloured.test_ratio:.1f})',
         f'follow each other, rather than scatter, in {words}', 'roll (2.5 times)',
     ):  # fmt: skip

@@ -13,9 +13,6 @@ from trawl_ros.estimation.fit.estimate import (
     Innovation,
     NetFactor,
     TowBias,
-    active_bounds,
-    interval,
-    is_determined,
     undetermined,
 )
 from trawl_ros.estimation.fit.fit import Fit
@@ -59,30 +56,20 @@ def posterior_estimate(
     A model that the data contradict knows less than it says: standard deviations are as many times
     larger as the misfit is (Birge 1932).
     """
-    prior, options = fit.prior, fit.options
-    values = np.array(fit.coefficients)
-    std = fit.birge_ratio * fit.std
-    degrees_of_freedom = fit.degrees_of_freedom + options.stated_noise_readings
-    low, high = interval(values, std, degrees_of_freedom, options.confidence, prior)
     return Estimate(
-        names=prior.names,
+        prior=fit.prior,
         revision=revision,
         stamp=max(linear.window.end_ns for linear in fit.windows),
         windows=len(fit.windows),
-        values=values,
-        std=std,
+        values=np.array(fit.coefficients),
         covariance=fit.birge_ratio**2 * fit.posterior.covariance,
-        low=low,
-        high=high,
-        shrink=1.0 - std / prior.std,
-        determined=is_determined(values, std, prior),
-        active_bounds=active_bounds(values, prior),
         condition_number=fit.posterior.condition_number,
-        undetermined=undetermined(fit.posterior, prior.names),
+        undetermined=undetermined(fit.posterior, fit.prior.names),
         noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
         tow_biases=tow_biases(fit),
         net=net_factors(fit),
-        degrees_of_freedom=degrees_of_freedom,
+        degrees_of_freedom=fit.degrees_of_freedom + fit.options.stated_noise_readings,
+        confidence=fit.options.confidence,
         birge_ratio=fit.birge_ratio,
         cost=fit.cost,
         objective=fit.objective,

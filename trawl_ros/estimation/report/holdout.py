@@ -3,14 +3,14 @@
 """Hold-out errors: prediction of whole tows, or whole steady states, left out of the fit."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.estimator import Estimator
-from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, stack
 from trawl_ros.estimation.windows.records import SteadyWindow
 
 NEAR_ENOUGH = 0.1
@@ -38,9 +38,9 @@ class HeldOut:
         In the order of `PAPER_CHANNELS`, NaN where a fit or a steady state is missing.
     """
 
-    by: str
-    groups: int
-    predicted: FloatArray
+    by: str = 'tow'
+    groups: int = 0
+    predicted: FloatArray = field(default_factory=lambda: stack(()))
 
 
 def hold_out(
