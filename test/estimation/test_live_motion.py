@@ -90,7 +90,9 @@ def test_at_its_end_a_tow_gives_what_its_bag_gives(
         live.record(sample)
     found = live.finish(None)
     np.testing.assert_allclose(found.fit.values, expected.fit.values, rtol=0, atol=1e-9)
-    np.testing.assert_allclose(found.covariance, expected.covariance, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(
+        found.estimate.covariance, expected.estimate.covariance, rtol=0, atol=1e-9
+    )
 
 
 def test_the_order_in_which_topics_arrive_changes_nothing_nor_what_was_before_a_reset(

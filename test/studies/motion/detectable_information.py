@@ -154,9 +154,9 @@ def _by_values(watched: WatchedGear, linear: LinearisedTow) -> FloatArray:
     number = sum(len(effect.parameters) for effect in watched.effects)
     found = np.zeros((len(tow), len(places), number))
     for stretch in np.flatnonzero(linear.towed):
-        moved = np.zeros((len(WATCHED), linear.by_examined.shape[-1]))
+        moved = np.zeros((len(WATCHED), linear.by['examined'].shape[-1]))
         shown = np.zeros(len(WATCHED))
-        moved[places], shown[places] = linear.by_examined[stretch], linear.values[stretch]
+        moved[places], shown[places] = linear.by['examined'][stretch], linear.values[stretch]
         at = inputs(float(tow.middles[stretch])).situation
         found[stretch] = watched.by_values(moved, shown, at)[places]
     return found

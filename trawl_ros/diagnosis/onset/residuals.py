@@ -164,7 +164,7 @@ def residual_rows(
     passing = np.hstack(((slopes * std)[:, ~lasting], absorbed[place]))
     own_columns = slopes[:, lasting] @ belief.root
     everything = np.hstack((own_columns, passing))
-    shift = linear.by_coefficients @ (linear.point.coefficients - known.values)
+    shift = linear.by['coefficients'] @ (linear.point.coefficients - known.values)
     residual = (linear.residual + shift)[place] - slopes[:, lasting] @ belief.mean
     covariance = of_errors[np.ix_(order, order)] + everything @ everything.T
     return ResidualRows(*place, model[order], residual, own_columns, covariance)

@@ -138,18 +138,18 @@ def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> 
     """Derivatives (n, k, p) of measured means by all parameters, in units of their prior std."""
     n, k = linear.values.shape
     total = np.zeros((n, k, len(layout)))
-    total[..., layout.of_coefficients] = linear.by_coefficients * prior_std
-    total[..., layout.of_added_mass] = linear.by_added_mass * ADDED_MASS_STD
-    total[..., layout.of_net] = linear.by_net * layout.net_std
+    total[..., layout.of_coefficients] = linear.by['coefficients'] * prior_std
+    total[..., layout.of_added_mass] = linear.by['added_mass'] * ADDED_MASS_STD
+    total[..., layout.of_net] = linear.by['net'] * layout.net_std
     for column, group in enumerate(GROUPS, start=layout.of_model.start):
         for row, name in enumerate(layout.channels):
             if group_of(name) == group:
                 values = np.nan_to_num(linear.values[:, row])
                 total[:, row, column] = layout.model * model_std(name, values)
-    total[..., layout.of_starts] = linear.by_starts * START_STD_M
-    total[..., layout.of_errors] = linear.by_errors
+    total[..., layout.of_starts] = linear.by['starts'] * START_STD_M
+    total[..., layout.of_errors] = linear.by['errors']
     for knots, own, _ in linear.tow.inputs.knot_places:
-        total[..., layout.of_knots][..., own] = linear.by_knots[..., own] @ knots.root
+        total[..., layout.of_knots][..., own] = linear.by[knots.channel] @ knots.root
     for number, error in enumerate(channel_errors(layout.channels)):
         row = layout.channels.index(error.channel)
         values = np.nan_to_num(linear.values[:, row]) if error.relative else np.ones(n)

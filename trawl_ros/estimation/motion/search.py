@@ -247,21 +247,34 @@ class MotionSearch:
         self.here, self.guides = list(place), dict(self.last_guides)
         return ''
 
-    def is_lower(self, tried: Sequence[LinearisedTow], there: Place, sizes: ErrorSizes) -> bool:
-        """True if the cost is lower there; stretches that one place lacks belong to neither."""
-        before = self.cost(without(self.linear, tried), self.here, sizes)
-        return self.cost(without(tried, self.linear), there, sizes) <= before * ROUNDED
+    def is_lower(
+        self,
+        tried: Sequence[LinearisedTow],
+        there: Place,
+        sizes: ErrorSizes,
+        free: Sequence[BoolArray] | None = None,
+    ) -> bool:
+        """True if the `cost` is lower there; stretches that one place lacks belong to neither."""
+        before = self.cost(without(self.linear, tried), self.here, sizes, free)
+        return self.cost(without(tried, self.linear), there, sizes, free) <= before * ROUNDED
 
-    def cost(self, linear: Sequence[LinearisedTow], place: Place, sizes: ErrorSizes) -> float:
+    def cost(
+        self,
+        linear: Sequence[LinearisedTow],
+        place: Place,
+        sizes: ErrorSizes,
+        free: Sequence[BoolArray] | None = None,
+    ) -> float:
         """Cost of the place where tows are linearised.
 
         Parameters that do not change the linearisation are at their best there (variable
         projection, Golub and Pereyra 1973): shapes of the slowest motions differ from place to
-        place, and so does what their amplitudes mean.
+        place, and so does what their amplitudes mean. ``free`` are flags (p,) of others that are.
         """
         data, largest = self.data(linear, place), self.options.largest_step
         problem = linear_problem(data, place, self.prior, sizes, largest)
-        return problem.cost(problem.projected(place, list(map(linear_part, self.layouts))))
+        free = list(map(linear_part, self.layouts)) if free is None else free
+        return problem.cost(problem.projected(place, free))
 
 
 def towed_flags(linear: Sequence[LinearisedTow]) -> list[BoolArray]:
