@@ -129,7 +129,7 @@ def _rows(
     """
     usual = columns(linear, layout, gear.prior.std)
     longer = np.log(_lengths(linear.tow) / USUAL_LENGTH) / np.log(LONGER)
-    trends = longer[:, None, None] * usual[..., layout.of_model]
+    trends = longer[:, None, None] * usual[..., layout.slices['model']]
     effects = _by_values(gear.watched, linear) * gear.units
     own, first = (usual, trends, effects), layout.shared
     every = np.concatenate((own[0][..., :first], *own[1:], own[0][..., first:]), axis=-1)

@@ -105,7 +105,7 @@ class ResidualRows:
 def lasting_flags(layout: TowLayout) -> BoolArray:
     """Return flags (p,) of the parameters that last beyond a part of a tow."""
     flags = np.ones(len(layout), np.bool_)
-    flags[layout.of_starts] = flags[layout.of_knots] = False
+    flags[layout.slices['starts']] = flags[layout.of_knots] = False
     return flags
 
 

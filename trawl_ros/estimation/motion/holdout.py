@@ -110,7 +110,7 @@ def _inputs(
     if not parts:
         return shown
     nearest = min(parts, key=away)
-    return corrected(shown, place[nearest][fit.layouts[nearest].of_errors])
+    return corrected(shown, place[nearest][fit.layouts[nearest].slices['errors']])
 
 
 def _stretches(

@@ -174,7 +174,7 @@ class MotionSearch:
         every = problem.joined.covariance
         own, layout, known = slice(0, len(prior)), self.layouts[0], self.gear.net_std
         covariance = every[own, own]
-        net_std = known * np.sqrt(np.diag(every)[layout.of_net])
+        net_std = known * np.sqrt(np.diag(every)[layout.slices['net']])
         return MotionFit(
             values=prior.start + prior.std * place[0][own],
             matrix=problem.joined.matrix,
@@ -324,7 +324,9 @@ def linear_data(
     for tow, layout, z, own in zip(linear, layouts, at, noise, strict=True):
         slopes = columns(tow, layout, prior.std)
         if not options.nuisances:
-            slopes[..., len(prior) : layout.of_net.start] = slopes[..., layout.of_gear :] = 0.0
+            slopes[..., len(prior) : layout.slices['net'].start] = slopes[..., layout.of_gear :] = (
+                0.0
+            )
         towed = np.where(linear_part(layout), 0.0, z)
         residual = tow.residual + slopes @ towed
         groups = []
