@@ -324,9 +324,8 @@ def linear_data(
     for tow, layout, z, own in zip(linear, layouts, at, noise, strict=True):
         slopes = columns(tow, layout, prior.std)
         if not options.nuisances:
-            slopes[..., len(prior) : layout.slices['net'].start] = slopes[..., layout.of_gear :] = (
-                0.0
-            )
+            net = layout.slices['net']
+            slopes[..., len(prior) : net.start] = slopes[..., net.stop :] = 0.0
         towed = np.where(linear_part(layout), 0.0, z)
         residual = tow.residual + slopes @ towed
         groups = []

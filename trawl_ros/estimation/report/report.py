@@ -19,8 +19,8 @@ from trawl_ros.estimation.fit.laws import (
     law_spans,
     working_angles,
 )
-from trawl_ros.estimation.fit.linearised import Linearised
-from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae, objective, paper_values, stack
+from trawl_ros.estimation.fit.linearised import Linearised, paper_rows
+from trawl_ros.estimation.fit.objective import mnae, objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
@@ -29,7 +29,6 @@ from trawl_ros.estimation.report.residuals import (
     ChannelResiduals,
     innovations,
     residuals,
-    solve_windows,
 )
 from trawl_ros.estimation.report.sensors import SensorComparison, compare_sensors
 from trawl_ros.estimation.report.spectrum import Spectrum, spectrum
@@ -240,14 +239,14 @@ def report(
     windows = estimator.windows
     number = 1 + max(window.tow for window in windows)
     own = [linear.state for linear in estimator.fit.windows]
-    at_end = solve_windows(estimator, estimate.values, estimator.fit.net, own)
-    at_start = solve_windows(estimator, estimator.prior.start)
+    at_end = estimator.solve(estimate.values, net=estimator.fit.net, own=own)
+    at_start = estimator.solve(estimator.prior.start)
     cases, law = {'start': at_start, 'refitted': at_end}, None
     if gear is not None and gear.pair is None:
         law = build_board(gear).law
         written = gear.board.coefficients.array()
         known = np.array_equal(written, estimator.prior.start)
-        by_gear = at_start if known else solve_windows(estimator, written)
+        by_gear = at_start if known else estimator.solve(written)
         cases = {'gear_file': by_gear, **cases}
     return Report(
         estimate=estimate,
@@ -258,10 +257,10 @@ def report(
         windows=windows,
         tows=tuple(tows) or tuple(f'tow {tow + 1}' for tow in range(number)),
         measured=stack([paper_values(window.means) for window in windows]),
-        at_start=_values(at_start),
-        at_end=_values(at_end),
+        at_start=paper_rows(at_start),
+        at_end=paper_rows(at_end),
         held_out=hold_out(estimator, folds, on_progress=on_progress),
-        at_truth=None if truth is None else _values(solve_windows(estimator, truth)),
+        at_truth=None if truth is None else paper_rows(estimator.solve(truth)),
         residuals=residuals(at_end),
         innovations=innovations(identification.course),
         course=tuple(identification.course),
@@ -346,16 +345,4 @@ def _laws(
         attack=(min(attack), max(attack)),
         angles=angles,
         quantities=law_quantities(law, estimate.values, estimate.covariance, angles, span),
-    )
-
-
-def _values(linearised: Sequence[Linearised | None]) -> FloatArray:
-    """Values of the channels of eq. 35 (n, 4), NaN where there is no steady state."""
-    return stack(
-        [
-            np.full(len(PAPER_CHANNELS), np.nan)
-            if linear is None
-            else paper_values(dict(zip(linear.channels, linear.solved, strict=True)))
-            for linear in linearised
-        ]
     )
