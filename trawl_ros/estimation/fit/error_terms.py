@@ -200,30 +200,19 @@ def _of_one_tow(
 ) -> TowErrors:
     present = np.array([[name in linear.channels for name in MEASURED] for linear in linearised])
     by_inputs = np.array([in_all_channels(linear, linear.by_inputs) for linear in linearised])
-    own = np.array(
-        [
-            [_own_std(linear, name, in_state, usual, options) for name in MEASURED]
-            for linear in linearised
-        ]
-    )
-    alone = np.array(
-        [[_own_std(linear, name, {linear.window.state: 1}, usual, options) for name in MEASURED]
-         for linear in linearised]
-    )  # fmt: skip
-    input_std = np.array(
-        [
-            [_own_std(linear, name, in_state, usual, options) for name in INPUTS]
-            for linear in linearised
-        ]
-    )
+    noise, state = np.array([_variances(one, usual, options) for one in linearised]).swapaxes(0, 1)
+    # All windows of a state share its offset. Times their number, their mean keeps its variance.
+    number = np.array([in_state[linear.window.state] for linear in linearised])[:, None]
+    variance, alone = noise + number * state, noise + state
+    std, k = np.sqrt(variance), len(MEASURED)
     slow = np.array([_unsettled(linear, in_state, options) for linear in linearised])
     return TowErrors(
         rows=np.array(rows),
         present=present,
-        noise=own,
-        numbers=present * alone**2 / own**2,
-        inputs=np.concatenate((by_inputs * input_std[:, None, :], slow[:, :, None]), axis=2),
-        input_std=input_std,
+        noise=std[:, :k],
+        numbers=present * alone[:, :k] / variance[:, :k],
+        inputs=np.concatenate((by_inputs * std[:, None, k:], slow[:, :, None]), axis=2),
+        input_std=std[:, k:],
         calibration=np.array([_calibration(linear, options) for linear in linearised]),
         input_calibration=np.array([_of_inputs(linear, options) for linear in linearised]),
         model=np.array([_model(linear, options) for linear in linearised]),
@@ -239,29 +228,30 @@ def _usual_noise(windows: Sequence[SteadyWindow]) -> dict[str, float]:
     return {group: float(np.median(noise)) for group, noise in by_group.items()}
 
 
-def _own_std(
-    linear: Linearised,
-    name: str,
-    in_state: Mapping[int, int],
-    usual: Mapping[str, float],
-    options: EstimatorOptions,
-) -> float:
-    window = linear.window
-    if name not in window.means or (name in MEASURED and name not in linear.channels):
-        return 1.0
-    # All windows of a state share its offset. Times their number, their mean keeps its variance.
-    state_std = CHANNELS[name].state_std(window.bias[name], options.state_share)
-    changing = in_state[window.state] * state_std**2
-    # About thirty readings measure their noise badly; a small value may be chance.
-    noise = window.own_noise(name, usual[group_of(name)])
-    return float(np.sqrt(noise**2 + changing))
+def _variances(
+    linear: Linearised, usual: Mapping[str, float], options: EstimatorOptions
+) -> FloatArray:
+    """Variances (2, channels and inputs) of the noise and of the offset in a window's state.
+
+    Where there is no reading they are 1 and 0.
+    """
+    window, found = linear.window, np.zeros((2, len(MEASURED) + len(INPUTS)))
+    for column, name in enumerate((*MEASURED, *INPUTS)):
+        if name not in linear.channels and name not in INPUTS:
+            found[0, column] = 1.0
+            continue
+        # About thirty readings measure their noise badly; a small value may be chance.
+        noise = window.own_noise(name, usual[group_of(name)])
+        offset = CHANNELS[name].state_std(window.bias[name], options.state_share)
+        found[:, column] = noise**2, offset**2
+    return found
 
 
 def _unsettled(
     linear: Linearised, in_state: Mapping[int, int], options: EstimatorOptions
 ) -> FloatArray:
     depth = linear.window.means.get('net_depth', 0.0)
-    # Windows of one state settle together, so their number is a factor as in `_own_std`.
+    # Windows of one state settle together, so their number is a factor as in `_of_one_tow`.
     size = options.unsettled * abs(depth) * np.sqrt(in_state[linear.window.state])
     return in_all_channels(linear, size * linear.slow)
 

@@ -91,12 +91,8 @@ def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
             means = [window.means[name] for window in windows if name in window.means]
             if not means:
                 continue
-            size = np.array(
-                [
-                    share * term.size(float(np.mean(means))) if term.channel == name else 0.0
-                    for term in TERMS
-                ]
-            )
+            mean = float(np.mean(means))
+            size = np.array([share * (term.channel == name) * term.size(mean) for term in TERMS])
             biases.append(
                 TowBias(
                     tow=windows[0].tow,

@@ -8,13 +8,12 @@ The order is coefficients, model, calibration, as in a fit; each is in units of 
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.error_terms import CALIBRATION, GROUP_OF, model_errors
+from trawl_ros.estimation.fit.estimate import posterior_of
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.linearised import Linearised
@@ -81,23 +80,7 @@ def information_in(fit: Fit) -> FloatArray:
 
 def covariance_from(information: FloatArray, prior: ParameterVector) -> FloatArray:
     """Return the covariance (q, q) of the coefficients from an information matrix (u, u)."""
-    # Reversed, the coefficients are the last block of L Lᵀ, whose inverse needs that block alone.
-    root = np.linalg.cholesky(information[::-1, ::-1])
-    number = len(prior)
-    inverse = solve_triangular(root[-number:, -number:], np.eye(number), lower=True)[:, ::-1]
-    covariance: FloatArray = inverse.T @ inverse * np.outer(prior.std, prior.std)
-    return covariance
-
-
-def fitted_covariance(
-    linearised: Sequence[Linearised],
-    coefficients: FloatArray,
-    prior: ParameterVector,
-    options: EstimatorOptions,
-) -> FloatArray:
-    """Return the posterior covariance (q, q) that the estimator would give with these windows."""
-    numbered = tuple(
-        replace(linear, window=replace(linear.window, index=index))
-        for index, linear in enumerate(linearised)
-    )
-    return Fit(numbered, coefficients, AS_STATED, prior, options).posterior.covariance
+    q = len(prior)
+    less = information[:q, q:] @ np.linalg.solve(information[q:, q:], information[q:, :q])
+    # The prior is in the information already.
+    return posterior_of(information[:q, :q] - less, prior.std, 0.0).covariance

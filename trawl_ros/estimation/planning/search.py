@@ -27,7 +27,6 @@ from trawl_ros.estimation.planning.duration import (
 )
 from trawl_ros.estimation.planning.information import (
     covariance_from,
-    fitted_covariance,
     information_before,
     information_of,
 )
@@ -114,7 +113,7 @@ class Designer:
         self._before = information_before(problem.prior, problem.estimator)
         # Information matrix of the windows of each candidate.
         self._gained = [
-            information_of(self._windows(candidate, 0), problem.prior, problem.estimator)
+            information_of(self._windows(candidate), problem.prior, problem.estimator)
             for candidate in self.candidates
         ]
 
@@ -131,13 +130,13 @@ class Designer:
         legs = self.timetable.legs(ordered)
         return legs if minutes_of(legs) <= self.problem.minutes else None
 
-    def _windows(self, candidate: TowableManoeuvre, state: int) -> tuple[Linearised, ...]:
-        """Predict the steady windows of a candidate; ``state`` is their state number."""
+    def _windows(self, candidate: TowableManoeuvre) -> tuple[Linearised, ...]:
+        """Predict the steady windows of a candidate."""
         problem = self.problem
         return imagined_windows(
             candidate,
             problem.coefficients,
-            state=state,
+            state=0,
             number=problem.windows.max_windows_per_state,
             noise=self.noise,
             to_come=rest_of(candidate, problem.windows).to_come(problem.windows),
@@ -155,19 +154,6 @@ class Designer:
     def covariance(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
         """Return the posterior covariance (q, q) of the coefficients after manoeuvres."""
         return covariance_from(self.information(manoeuvres), self.problem.prior)
-
-    def fitted(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
-        """Return the posterior covariance (q, q) that the estimator itself computes.
-
-        It agrees with `covariance`, which is faster and is used in the search.
-        """
-        problem = self.problem
-        windows = [
-            linear
-            for state, manoeuvre in enumerate(manoeuvres)
-            for linear in self._windows(self.candidates[self._number[manoeuvre]], state)
-        ]
-        return fitted_covariance(windows, problem.coefficients, problem.prior, problem.estimator)
 
     def quantities(self, manoeuvres: Sequence[Manoeuvre]) -> LawQuantities:
         """Return value and slope of the laws after manoeuvres."""

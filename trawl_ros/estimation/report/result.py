@@ -16,6 +16,9 @@ from trawl_ros.estimation.windows.noise_density import noise_densities
 COEFFICIENT_KEYS = 'start', 'value', 'std', 'low', 'high', 'shrink', 'determined'
 """Keys of a coefficient."""
 
+BIAS_KEYS = 'unit', 'value', 'std', 'known'
+"""Keys of a bias."""
+
 
 def result(report: Report) -> dict[str, object]:
     """Build the content of ``identification.json``; numbers that do not exist are None."""
@@ -112,12 +115,7 @@ def _tows(report: Report) -> list[dict[str, object]]:
                     for channel, error in zip(PAPER_CHANNELS, tow.held_out, strict=True)
                 },
                 'biases': {
-                    bias.channel: {
-                        'unit': bias.unit,
-                        'value': bias.value,
-                        'std': bias.std,
-                        'known': bias.known,
-                    }
+                    bias.channel: {key: getattr(bias, key) for key in BIAS_KEYS}
                     for bias in report.estimate.tow_biases
                     if bias.tow == tow.tow
                 },
