@@ -1,4 +1,4 @@
-"""Lines about trimmed boards: boards that lean inward are told from those that lean outward."""
+"""Lines about trimmed boards say if the upper edge leans outward."""
 
 from types import SimpleNamespace
 
@@ -14,6 +14,7 @@ def line(roll: float) -> str:
     return state_line(150.0, 1.45, steady)  # type: ignore[arg-type]
 
 
-def test_boards_that_lean_inward_are_told_from_those_that_lean_outward() -> None:
-    assert 'δ 8.0° inward, β' in line(-0.14)
+def test_an_upper_edge_that_leans_outward_is_printed() -> None:
+    # Roll is positive with the top to starboard, which is inward for the port board.
+    assert 'δ 8.0°, upper edge outward, β' in line(-0.14)
     assert 'δ 8.0°, β' in line(0.14)

@@ -29,6 +29,11 @@ OF_GEARS = (
     'gear import {path}',
     f'identify sea_trial --steady --gear {{path}} --out {OUT}',
     'bag compare sea_trial sea_trial --gear {path}',
+    f'missing-effect make {OUT} --seed 1 --trials 1 --gear {{path}}',
+)
+OF_TRIALS = (
+    f'missing-effect answer {{path}} --out {OUT}',
+    f'missing-effect score {{path}} answers.json --out {OUT}',
 )
 OF_SCENARIOS = (
     f'tow {{path}} --out {OUT}',
@@ -64,7 +69,7 @@ def test_a_missing_file(refused, tmp_path, command):
     refused(command, tmp_path / 'absent.yaml')
 
 
-@pytest.mark.parametrize('command', OF_BAGS + OF_GEARS + OF_SCENARIOS + OF_LOGS)
+@pytest.mark.parametrize('command', OF_BAGS + OF_GEARS + OF_SCENARIOS + OF_LOGS + OF_TRIALS)
 def test_an_empty_folder(refused, tmp_path, command):
     (tmp_path / 'hollow').mkdir()
     refused(command, tmp_path / 'hollow')

@@ -66,7 +66,7 @@ CONVENTIONS = {
     'geometry_msgs/msg/PoseWithCovarianceStamped': (
         'm; covariance m², rad²', 'no message; variance 1e6 where not measured',
     ),
-    'geometry_msgs/msg/Vector3Stamped': ('rad, m or N, as said', 'NaN'),
+    'geometry_msgs/msg/Vector3Stamped': ('m', 'NaN'),
     'geometry_msgs/msg/WrenchStamped': ('N, N m', 'never missing'),
     'geometry_msgs/msg/PolygonStamped': ('m', 'never missing'),
     'geometry_msgs/msg/PoseStamped': ('m, quaternion', 'never missing'),
@@ -88,8 +88,19 @@ MISSING = {
     'truth/seabed': '+Inf where there is no seabed',
     'vessel/echo_sounder/school': '+Inf without fish (REP-117)',
     'truth/observables': 'no message',
+    'command/winch': 'winch not named',
 }
-"""The same of single topics."""
+"""What stands for a missing number of single topics."""
+
+UNITS = {
+    **dict.fromkeys(('truth/door/port/angles', 'truth/door/starboard/angles'), 'rad'),
+    **dict.fromkeys(('winch/port/warp_angles', 'winch/starboard/warp_angles'), 'rad'),
+    **dict.fromkeys(('tether/port/force', 'tether/starboard/force'), 'N'),
+    'truth/observables': 'm, N, rad',
+    'identification/innovation': 'that of the channel; effort 1',
+    'command/winch': 'm, m/s',
+}
+"""Units of single topics."""
 
 SERVICE_SENTENCES = {
     'pause': 'Stop the tow where it is; truth and clock stand still.',
@@ -171,7 +182,7 @@ def table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 def topic_row(topic: Topic) -> tuple[str, ...]:
     unit, missing = CONVENTIONS[topic.type]
-    missing = MISSING.get(topic.name, missing)
+    unit, missing = UNITS.get(topic.name, unit), MISSING.get(topic.name, missing)
     rate = f'{topic.rate:g} Hz' if topic.rate else 'on an event'
     if isinstance(topic, Sensor) and topic.rate is None:
         rate = 'per sweep'

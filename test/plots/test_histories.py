@@ -88,7 +88,7 @@ def test_truth_is_broken_where_it_was_not_recorded(tow):
 
 
 def test_headings_are_those_of_a_compass(tow):
-    axes = panel(history_figure(tow), 'heading from north by east / °')
+    axes = panel(history_figure(tow), 'true heading / °')
     (line,) = (line for line in axes.lines if line.get_linestyle() == '-')
     degrees = line.get_ydata()
     # 165° by ENU is 285° on a compass, and turning to port lowers it.

@@ -21,6 +21,8 @@ def test_the_trimmed_gear_works_at_the_wanted_angles(model: GearModel) -> None:
     ):
         assert np.degrees(attack) == pytest.approx(22.0, abs=0.01)
         assert np.degrees(lean) == pytest.approx(15.0, abs=0.01)
+    # A positive δ leans the upper edges inward: that of the port board to starboard.
+    assert seen.port_roll > 0.0 > seen.starboard_roll
     # Close to the rigging it started from, and the same when found cold.
     assert np.abs(found.points - model.board.points).max() < 1.0
     again = steady_state(model.with_board(points=found.points), 500.0, 2.1)

@@ -56,8 +56,8 @@ def command(
     """Find where the model and BAGS disagree, and name the effect that the model lacks.
 
     The command writes report.html, report.md, diagnosis.json and figures. If an effect is named, it
-    also writes model.yaml, the gear with this effect. The exit code is 0 without a discrepancy, 10
-    with one, and 11 if these bags do not decide.
+    also writes model.yaml, the gear with this effect. The exit code is 0 if no discrepancy is
+    shown, 10 if one is, and 11 if these bags do not decide.
     """
     console = error_console()
     with ProgressDisplay(console) as display:

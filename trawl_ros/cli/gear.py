@@ -223,12 +223,13 @@ def copy(gear: str, file: Path) -> None:
 def set_door(
     file: Path, door: str, warp: float, speed: float, area: float | None, units: DisplayUnits
 ) -> None:
-    """Put a door of the catalogue on the gear in FILE.
+    """Put another door on the gear in FILE.
 
-    The command finds shackle points at which the boards have a usable steady state at --warp and
-    --speed, and prints what it changed. If it finds none, FILE stays as it is, and the command
-    says what was tried and which plate area would have the old lift. `trawl gear doors` lists the
-    doors. Mass and volume of the plate stay: write those of the new door into FILE.
+    DOOR is a name of the catalogue or a door file. The command finds shackle points at which the
+    doors have a usable steady state at --warp and --speed, and prints what it changed. If it finds
+    none, FILE stays as it is, and the command says what was tried and which plate area would have
+    the old lift. `trawl gear doors` lists the doors. Mass and volume of the plate stay: write those
+    of the new door into FILE. `trawl trim` finds points for other angles.
     """
     from trawl_ros.cli.trim import points_lines, state_line
     from trawl_ros.gear.door_text import with_door, write_door

@@ -50,7 +50,8 @@ def _kinds(
 @click.option(
     '--inclination',
     type=Number(-45.0, 60.0),
-    help='Wanted inclination δ of the doors, deg; below 0 they lean inward.',
+    help='Wanted inclination δ of the doors, deg: above 0 the upper edge leans inward, below 0 '
+    'outward.',
 )
 @click.option(
     '--pitch',
@@ -91,7 +92,7 @@ def _kinds(
 @click.option(
     '--in-motion',
     is_flag=True,
-    help='Choose the points so that the boards stand while they are hauled, veered and turned over '
+    help='Choose the points so that the doors stand while they are hauled, veered and turned over '
     'the range of --warps and --speeds; takes minutes on all cores.',
 )
 @click.option('--out', type=FILE, help='New file for a copy of GEAR with the result.')
@@ -115,11 +116,14 @@ def command(
     out: Path | None,
     units: DisplayUnits,
 ) -> None:
-    """Find fastening points that give the boards of GEAR the wanted angles.
+    """Find fastening points that give the doors of GEAR the wanted angles.
 
     GEAR is a gear file or the name of a gear of the package. The search starts from the points of
     the file and changes them as little as possible. The result is printed in the format of a gear
     file; only --out writes a file.
+
+    The printed δ has no sign; 'upper edge outward' is added if the doors lean that way. For another
+    door use `trawl gear set-door`.
 
     Instead of angles you can give --spread and --depth of the doors, measured at --warp and
     --speed. The command then finds the nearest angles. With --warps or --speeds it chooses all
@@ -128,7 +132,7 @@ def command(
 
     With --in-motion every rigging that is tried has the wanted angles in the middle of the range
     and is towed for 88 minutes under random commands, in calm water and in swell. The rigging whose
-    boards lean least is chosen. Give the result to the command again to search further.
+    doors lean least is chosen. Give the result to the command again to search further.
     """
     from trawl_ros.gear.edit import WRITTEN_DECIMALS, require_new, write_changed
     from trawl_ros.gear.load import load_gear
@@ -350,11 +354,11 @@ def points_lines(points: FloatArray) -> tuple[str, ...]:
 def state_line(warp: float, speed: float, steady: 'SteadyState') -> str:
     """Describe a steady state at a warp length (m) and speed (m/s)."""
     observables: Observables = steady.observables
-    # δ has no sign; the roll of the port board gives the direction of its lean.
-    inward = ' inward' if observables.port_roll < 0.0 else ''
+    # δ has no sign. Roll is positive with the top to starboard: inward for the port board.
+    edge = ', upper edge outward' if observables.port_roll < 0.0 else ''
     return (
         f'at {warp:g} m and {speed:g} m/s: α {np.degrees(observables.port_attack):.1f}°, '
-        f'δ {np.degrees(observables.port_inclination):.1f}°{inward}, '
+        f'δ {np.degrees(observables.port_inclination):.1f}°{edge}, '
         f'β {np.degrees(observables.port_slip):.1f}°, '
         f'spread {observables.door_spread:.1f} m, door depth {observables.door_depth:.1f} m, '
         f'tension {observables.warp_tension / 1e3:.1f} kN; the slowest motion settles in '

@@ -106,7 +106,7 @@ PANELS = (
         (_one('speed_water', 'through water'), _other('speed_ground', 'over ground')),
         0.2,
     ),
-    Panel('heading from north by east / °', (_one('heading'),), 4.0),
+    Panel('true heading / °', (_one('heading'),), 4.0),
 )
 
 

@@ -16,7 +16,7 @@ FACES = {'wing': '#dfeaf2', 'body': '#f4f1e8', 'codend': '#ece4ee'}
 LABEL_LENGTH = 0.03
 """Pieces shorter than this share of the net get no label of their own."""
 
-LABEL_WIDTH_SHARE = 0.35
+LABEL_WIDTH_SHARE = 0.47
 """Share of the picture's half width that a piece needs for its label."""
 
 Shape = tuple[PieceRecord, list[tuple[float, float]]]
@@ -52,7 +52,9 @@ def net_plan_figure(name: str, plan: NetPlanRecord) -> Figure:
                 )
             )
             long = corners[2][1] - corners[0][1]
-            if abs(long) > LABEL_LENGTH * (ahead + rear) or piece.part == 'wing':
+            # What goes all around is labelled once.
+            again = piece.panel == 'all' and panel != panels[0]
+            if not again and (abs(long) > LABEL_LENGTH * (ahead + rear) or piece.part == 'wing'):
                 _label(axes, piece, corners, wide)
         axes.set_xlim(-wide, wide)
         axes.set_ylim(1.01 * (ahead + rear), -0.01 * (ahead + rear))
@@ -109,7 +111,9 @@ def _label(axes: Axes, piece: PieceRecord, corners: list[tuple[float, float]], w
     fits = piece.part == 'wing' or right > LABEL_WIDTH_SHARE * wide
     knots = ', knotless' if piece.knots == 'knotless' else ''
     whole = ' around' if piece.panel == 'all' else ''
-    counts = f'{piece.mesh_mm:g} mm, {piece.front_meshes:g}–{piece.back_meshes:g} × '
+    # The cut edge of a wing leaves room for short lines only.
+    between = '\n' if piece.part == 'wing' else ' '
+    counts = f'{piece.mesh_mm:g} mm,{between}{piece.front_meshes:g}–{piece.back_meshes:g} × '
     counts += f'{piece.long_meshes:g}{whole}'
     ropes = piece.orientation == 'ropes'
     if ropes:
@@ -126,7 +130,7 @@ def _label(axes: Axes, piece: PieceRecord, corners: list[tuple[float, float]], w
         f'{counts}\n{piece.material} {1e3 * piece.twine.diameter:.2g} mm{knots}',
         ha=side,
         va='center',
-        fontsize=5.5,
+        fontsize=7.0,
         parse_math=False,
         backgroundcolor=FACES[piece.part] if ropes else 'none',
     )

@@ -115,7 +115,7 @@ ESTIMATES = (
     ),
     Topic(
         'identification/status', 'diagnostic_msgs/msg/DiagnosticArray', '', None,
-        'The same by name, with intervals, counts by reason, converged or not and why.',
+        'The estimate by name: intervals, counts by reason, converged or not and why.',
         _IDENTIFIED, ('trial_node', 'view_node'), latched=True,
     ),
     Topic(

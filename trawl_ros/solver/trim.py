@@ -107,7 +107,8 @@ def trim(
         The gear. The search starts from its points and keeps its installation angles. Effects of
         its gear file act.
     attack, inclination
-        Wanted α and δ, rad; the outward normal leans up, or down if δ is negative.
+        Wanted α and δ, rad. With δ above 0 the upper edge leans inward and the outward normal up;
+        below 0 the upper edge leans outward.
     pitch
         Wanted pitch of the boards, nose down, rad.
     warp_length, speed

@@ -60,7 +60,6 @@ ENDS = {
     'trawl bag repair cut.mcap': 3,
     'trawl diagnose': 10,
     'trawl gear state kaifuha --warp 200 --speed 3.0': 1,
-    'trawl trim broken.yaml': 1,
     'bash secured.sh winch_node': 1,
 }
 """Exit codes that documents state, by the beginning of the command; 0 else."""

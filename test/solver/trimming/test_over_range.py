@@ -109,7 +109,7 @@ def test_each_point_of_a_range_is_usable_and_the_attitude_changes_little(model: 
 
 
 @pytest.mark.slow
-def test_boards_that_lean_inward_dig_in(model: GearModel) -> None:
+def test_boards_whose_upper_edge_leans_outward_go_deeper(model: GearModel) -> None:
     depths = []
     for lean in (-6.0, 12.0):
         found = trim_over_range(

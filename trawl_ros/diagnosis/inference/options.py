@@ -29,7 +29,7 @@ class InferenceOptions:
     refits
         Largest number of refits.
     grown
-        Number of the likeliest hypotheses to which every other one is added.
+        Number of the likeliest hypotheses that are refitted, and to which every other one is added.
     largest_set
         Largest number of causes at once.
     pattern_sizes
@@ -48,7 +48,7 @@ class InferenceOptions:
     unknown_rate: float = 0.03
     tail: float = 1e-3
     least_share: float = 0.01
-    refits: int = 8
+    refits: int = 14
     grown: int = 6
     largest_set: int = 3
     pattern_sizes: tuple[float, ...] = (2.0, 8.0)

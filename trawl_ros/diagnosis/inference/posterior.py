@@ -4,7 +4,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 from scipy.special import logsumexp
@@ -118,7 +118,17 @@ def above(path: str) -> Iterator[str]:
 
 @dataclass
 class _Search:
-    """Search for the posterior: log Bayes factors of sets, ``first`` to first order, and refits."""
+    """Search for the posterior.
+
+    Attributes
+    ----------
+    factors, first
+        Log Bayes factors of sets, as known now and to first order.
+    nearest
+        Refitted set around which a set is known to first order; none: the boards alone.
+    refits, around
+        Refits of sets, and the marginals around them.
+    """
 
     predictor: Predictor
     base: Refit
@@ -127,6 +137,7 @@ class _Search:
     on_progress: OnProgress
     factors: dict[Key, float] = field(default_factory=dict)
     first: dict[Key, float] = field(default_factory=dict)
+    nearest: dict[Key, Key] = field(default_factory=dict)
     refits: dict[Key, Refit | None] = field(default_factory=dict)
     around: dict[Key, Marginal] = field(default_factory=dict)
 
@@ -148,39 +159,75 @@ class _Search:
         """Add every hypothesis to sets, to first order; return the new sets."""
         grown = []
         for key in keys:
-            chosen = self.chosen(key)
-            first = log_factor(self.screen.marginal, chosen) if key else 0.0
-            beside = (
-                self.screen.marginal.given(chosen.places, chosen.mean, chosen.std)
-                if key
-                else self.screen.marginal
-            )
+            first = self.factors[key]
+            beside, offset = self._beside(key)
             taken = {self.screen.suspects[place].candidate.name for place in key}
             for place, suspect in enumerate(self.screen.suspects):
                 new = tuple(sorted((*key, place)))
                 if suspect.candidate.name in taken:
                     continue
+                block = moved(suspect.block, offset)
                 each = [
-                    log_factor(beside, Chosen().joined(suspect.block, variant))
+                    log_factor(beside, Chosen().joined(block, variant))
                     for variant in suspect.variants
                 ]
                 factor = first + float(logsumexp(each))
-                if key and not self.is_worth(key, place, factor):
+                if not self.is_worth(new, factor):
                     continue
                 if factor > self.factors.get(new, -np.inf):
                     self.factors[new] = factor
+                    self.nearest[new] = key if key in self.around else self.nearest.get(key, ())
                     grown.append(new)
         return sorted(set(grown), key=self.weight, reverse=True)
 
-    def is_worth(self, key: Key, place: int, factor: float) -> bool:
-        """True if one more cause makes a set likelier (Occam's window, Madigan & Raftery 1994)."""
-        more = (factor - self.factors[key]) / self.options.temperature
-        return more + self.screen.suspects[place].log_odds > 0.0
+    def _beside(self, key: Key) -> tuple[Marginal, int]:
+        """Return the marginal with a set integrated out, around the nearest refit.
+
+        With it goes the place where the values of all hypotheses begin.
+        """
+        near = key if key in self.around else self.nearest.get(key, ())
+        found, offset = self.screen.marginal, 0
+        if near:
+            best = self._likeliest(near)
+            found = self.around[near].given(best.places, best.mean, best.std)
+            offset = sum(len(self.screen.suspects[place].block) for place in near)
+        for place in (own for own in key if own not in near):
+            block = moved(self.screen.suspects[place].block, offset)
+            one = max(
+                (Chosen().joined(block, own) for own in self.screen.suspects[place].variants),
+                key=lambda chosen: log_factor(found, chosen),
+            )
+            found = found.given(one.places, one.mean, one.std)
+        return found, offset
+
+    def _likeliest(self, key: Key) -> Chosen:
+        """Return the likeliest variants of a refitted set."""
+        suspects = tuple(self.screen.suspects[place] for place in key)
+        return max(_choices(suspects), key=lambda chosen: log_factor(self.around[key], chosen))
+
+    def is_worth(self, new: Key, factor: float) -> bool:
+        """True if a set of several is likelier than each part (Madigan and Raftery 1994)."""
+        parts = (part for size in range(1, len(new)) for part in combinations(new, size))
+        weight = self.odds(new) + factor / self.options.temperature
+        return all(weight > self.weight(part) for part in parts if part in self.factors)
+
+    def known(self, key: Key) -> float:
+        """Log Bayes factor of the refitted set around which a set is known to first order."""
+        return self.factors[self.nearest.get(key, ())]
 
     def weight(self, key: Key) -> float:
         """Log of the posterior weight of a set."""
-        odds = sum(self.screen.suspects[place].log_odds for place in key)
-        return odds + self.factors[key] / self.options.temperature
+        return self.odds(key) + self.factors[key] / self.options.temperature
+
+    def odds(self, key: Key) -> float:
+        """Log of the prior odds of a set."""
+        return sum(self.screen.suspects[place].log_odds for place in key)
+
+    def refit_likely(self, keys: Sequence[Key]) -> None:
+        """Refit those of some sets that are likelier than nothing."""
+        for key in keys:
+            if self.weight(key) > 0.0:
+                self._refit(key)
 
     def refit_parts(self) -> bool:
         """Refit the sets that lack one cause of the likeliest one; False where all are."""
@@ -199,12 +246,18 @@ class _Search:
             return False
         # What first order missed of one cause it may miss of another that explains as much.
         missed = max(
-            (self.factors[key] / first - 1.0 for key, first in self.first.items() if first > 0.0),
+            (
+                (self.factors[key] - first) / gain
+                for key, first in self.first.items()
+                if (gain := first - self.known(key)) > 0.0
+            ),
             default=0.0,
         )
         hoped = {
             key: self.weight(key)
-            + max(missed, 0.0) * max(self.factors[key], 0.0) / self.options.temperature
+            + max(missed, 0.0)
+            * max(self.factors[key] - self.known(key), 0.0)
+            / self.options.temperature
             for key in waiting
         }
         key = max(waiting, key=lambda own: hoped[own])
@@ -240,7 +293,10 @@ class _Search:
         return refitted(predictor, self.base, wanted, columns, away[places])
 
     def _around(self, fitted: Refit, suspects: tuple[Suspect, ...]) -> Marginal:
-        """Marginal around a refit: values of the suspects, and behind them sizes of patterns."""
+        """Marginal around a refit.
+
+        It is of values of the suspects, behind them those of all hypotheses, and sizes of patterns.
+        """
         screen, fit = self.screen, self.screen.counted(fitted.fit)
         effects = fit.prior.slice_of('effect')
         scale = np.concatenate([suspect.candidate.scale for suspect in suspects])
@@ -248,10 +304,15 @@ class _Search:
         away = (fitted.values - starts) / scale
         own = [linear.by_coefficients[:, effects] * scale for linear in fit.windows]
         form = form_errors(fit, [columns @ away for columns in own], screen.errors.form)
-        columns = [np.hstack(pair) for pair in zip(own, screen.shapes, strict=True)]
+        units = np.concatenate([suspect.candidate.scale for suspect in screen.suspects])
+        columns = [
+            np.hstack((fitted, every * units, shapes))
+            for fitted, every, shapes in zip(own, screen.columns, screen.shapes, strict=True)
+        ]
+        others = np.zeros(screen.number + len(screen.patterns))
         blocks = blocks_of(
             fit, columns, errors=screen.errors, weights=screen.weights, form=form,
-            away=np.concatenate((away, np.zeros(len(screen.patterns)))),
+            away=np.concatenate((away, others)),
         )  # fmt: skip
         return marginal(blocks)
 
@@ -266,13 +327,16 @@ class _Search:
             places = range(screen.number, screen.number + len(screen.patterns))
             found = unknown(screen.marginal.of(places), self.options)
             return found.log_factor, found
-        around = self.around[key]
-        suspects = tuple(self.screen.suspects[place] for place in key)
-        best = max(_choices(suspects), key=lambda chosen: log_factor(around, chosen))
+        beside, _ = self._beside(key)
         number = len(self.screen.patterns)
-        places = range(len(around.score) - number, len(around.score))
-        found = unknown(around.given(best.places, best.mean, best.std).of(places), self.options)
+        places = range(len(beside.score) - number, len(beside.score))
+        found = unknown(beside.of(places), self.options)
         return self.factors[key] + found.log_factor, found
+
+
+def moved(block: range, offset: int) -> range:
+    """Return a block of places behind an offset."""
+    return range(block.start + offset, block.stop + offset)
 
 
 def _choices(suspects: tuple[Suspect, ...]) -> Iterator[Chosen]:
@@ -311,8 +375,11 @@ def infer(
         Called before each refit.
     """
     search = _Search(predictor, base, screen, options, on_progress, factors={(): 0.0})
-    keys: list[Key] = [()]
-    for _ in range(options.largest_set):
+    keys = search.grow([()])
+    # Refitted before they grow: what first order misses of one cause, others would make up.
+    search.refit_likely(keys[: options.grown])
+    keys = sorted(search.around or keys, key=search.weight, reverse=True)
+    for _ in range(1, options.largest_set):
         keys = search.grow(keys[: options.grown])
     while search.refit_next() or search.refit_parts():
         pass

@@ -28,6 +28,7 @@ from trawl_ros.estimation.fit.linearised import (
 )
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.fit.prediction import SteadyPredictor
+from trawl_ros.estimation.fit.standing import standing_starts
 from trawl_ros.estimation.fit.window_search import NO_STEADY_STATE, WindowSearch
 from trawl_ros.estimation.least_squares.descent import DescentOptions, Rest, descend
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -95,6 +96,8 @@ class Estimator:
         self.history: list[Progress] = []
         self._fit = Fit((), np.array(self.prior.start), AS_STATED, self.prior, self.options)
         self._without: list[SteadyWindow] = []
+        self._start = self.prior.start
+        self._stood_in: set[int] = set()
         self._revision = 0
 
     @property
@@ -125,8 +128,11 @@ class Estimator:
         try:
             linear = self._linearise(window, self.coefficients, self._inputs_of(window), start=near)
         except NoSteadyState:
-            self._without.append(window)
-            return None
+            stood = None if self._fit.windows else self._stood(window)
+            if stood is None:
+                self._without.append(window)
+                return None
+            linear = stood
         innovation = self._innovation(linear)
         self._fit = replace(self._fit, windows=(*self._fit.windows, linear))
         rest, obstacle = self._descend(self.options.relinearise, self.options.iterations_per_window)
@@ -139,6 +145,8 @@ class Estimator:
         if self._without and not self._fit.windows:
             # First order has led the estimate where the gear has no steady state at all.
             self._from_start()
+        if not self._fit.windows and any(self._stood(window) for window in self._without):
+            self._solve_all()
         converged, reason = self._rest_with_all()
         doubtful = self._fit.birge_ratio > POOR_MISFIT or not converged
         if self.options.second_start and self._fit.windows and doubtful:
@@ -281,9 +289,24 @@ class Estimator:
             self.predictor, self.observables, window, coefficients, starts, inputs, self._fit.net
         )
 
+    def _stood(self, window: SteadyWindow) -> Linearised | None:
+        """Start where the boards stand as a window shows them, once for each of a few states."""
+        if window.state in self._stood_in or len(self._stood_in) >= self.options.standing_states:
+            return None
+        self._stood_in.add(window.state)
+        for start in standing_starts(self.predictor, self.prior, window):
+            try:
+                linear = self._linearise(window, start)
+            except NoSteadyState:
+                continue
+            self._start = start
+            self._fit = replace(self._fit, coefficients=start)
+            return linear
+        return None
+
     def _from_start(self) -> None:
-        """Linearise all windows at the prior's start, as if none had been seen."""
-        self._fit = replace(self._fit, coefficients=np.array(self.prior.start), scales=AS_STATED)
+        """Linearise all windows where the fit began, as if none had been seen."""
+        self._fit = replace(self._fit, coefficients=np.array(self._start), scales=AS_STATED)
         self._solve_all()
 
     def _rest_with_all(self) -> tuple[bool, str]:

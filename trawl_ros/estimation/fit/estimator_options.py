@@ -11,7 +11,7 @@ from trawl_ros.core.errors import TrawlError
 
 MAY_BE_ZERO = (
     'prior_weight', 'state_share', 'model_error', 'model_trend', 'unsettled', 'net_drag',
-    'net_weight', 'second_start', 'set_aside',
+    'net_weight', 'second_start', 'set_aside', 'standing_states',
 )  # fmt: skip
 
 
@@ -65,6 +65,9 @@ class EstimatorOptions:
     second_start
         True if a fit with a large misfit, or one that does not converge, is repeated from the
         prior's start.
+    standing_states
+        Number of steady states at which boards that fall at the prior's start are made to stand as
+        they are seen to.
     """
 
     huber: float = 1.345
@@ -88,6 +91,7 @@ class EstimatorOptions:
     set_aside: float = 0.0
     tolerance: float = 0.02
     second_start: bool = True
+    standing_states: int = 3
 
     def __post_init__(self) -> None:
         for field in fields(self):

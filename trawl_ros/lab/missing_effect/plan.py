@@ -14,7 +14,7 @@ IN_LIBRARY = sorted(set(EVERY_CAUSE) - set(NOT_IN_LIBRARY))
 
 PAIRS = (
     ('rigging_epsilon', 'speed_log'),
-    ('tension_cell', 'floats_gone'),
+    ('tension_cell', 'kite_gone'),
     ('counter_offset', 'net_drag'),
     ('clumps', 'spread_sensor'),
 )

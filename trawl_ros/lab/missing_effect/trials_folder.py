@@ -115,6 +115,7 @@ def make_trials(
     TrawlError
         If the folder holds trials of another seed, gear or form, or cannot be written.
     """
+    load_gear(gear)  # a wrong name must not leave a folder behind
     key = KeyRecord(seed=seed, gear=gear, form=form, trials={}, not_possible={})
     if key_file(folder).exists():
         # Continue only a folder that was begun with the same arguments.
@@ -223,7 +224,18 @@ def hypotheses(gear: GearRecord) -> tuple[HypothesisRecord, ...]:
 
 
 def read_trials(folder: Path) -> TrialsRecord:
-    """Read ``trials.json``, which a method may see."""
+    """Read ``trials.json``, which a method may see.
+
+    Raises
+    ------
+    TrawlError
+        If it is missing or damaged.
+    """
+    if not (folder / TRIALS_FILE).exists():
+        raise TrawlError(
+            f'{folder}: found no {TRIALS_FILE}, expected a folder of '
+            f'`trawl missing-effect make {folder}`'
+        )
     return _read(TrialsRecord, folder / TRIALS_FILE)
 
 

@@ -94,7 +94,7 @@ def fit_door(
     area_m2: float | None = None,
     on_progress: OnProgress = ignore,
 ) -> FittedDoor:
-    """Put a door of the catalogue on a gear, with shackle points that suit it.
+    """Put a door of the catalogue or of a file on a gear, with shackle points that suit it.
 
     Parameters
     ----------

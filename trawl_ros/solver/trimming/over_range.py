@@ -175,7 +175,7 @@ def trim_over_range(
     model
         The gear. The search starts from its points. Effects of its gear file act.
     attack, inclination
-        Wanted α and δ, rad; the outward normal leans up, or down if δ is negative.
+        Wanted α and δ, rad. With δ above 0 the upper edge leans inward; below 0, outward.
     pitch
         Wanted pitch of the boards, nose down, rad.
     warp_lengths, speeds
