@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.estimation.fit.error_terms import Scheme
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.laws import WorkingAngles, law_quantities
 from trawl_ros.estimation.fit.parameters import ParameterGroup, ParameterVector
 from trawl_ros.estimation.from_gear import board_prior
@@ -182,7 +182,7 @@ def trial_windows(
     Calibration is wrong throughout; ``noise`` is a factor on what differs between windows, for
     warp lengths and speed 1 at most.
     """
-    shares = Scheme()
+    shares = EstimatorOptions()
     drawn = {name: rng.normal(size=2) for name in sorted(CHANNELS)}
     found = []
 

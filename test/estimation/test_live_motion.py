@@ -60,7 +60,9 @@ def same(found, expected):
     assert [update.stamp for update in found] == [update.stamp for update in expected]
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one.outcome.fit.values, other.outcome.fit.values, atol=1e-9)
-        np.testing.assert_allclose(one.outcome.covariance, other.outcome.covariance, atol=1e-9)
+        np.testing.assert_allclose(
+            one.outcome.estimate.covariance, other.outcome.estimate.covariance, atol=1e-9
+        )
 
 
 def test_each_half_minute_brings_an_estimate(learned):
@@ -70,7 +72,7 @@ def test_each_half_minute_brings_an_estimate(learned):
     assert [update.outcome.duration_s for update in learned] == [
         (stamp - 1000 * SECOND) / SECOND - 300.0 for stamp in stamps
     ]
-    assert np.all(learned[-1].outcome.std <= learned[-1].outcome.prior.std)
+    assert np.all(learned[-1].outcome.estimate.std <= learned[-1].outcome.prior.std)
 
 
 def test_at_its_end_a_tow_gives_what_its_bag_gives(
@@ -88,7 +90,9 @@ def test_at_its_end_a_tow_gives_what_its_bag_gives(
         live.record(sample)
     found = live.finish(None)
     np.testing.assert_allclose(found.fit.values, expected.fit.values, rtol=0, atol=1e-9)
-    np.testing.assert_allclose(found.covariance, expected.covariance, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(
+        found.estimate.covariance, expected.estimate.covariance, rtol=0, atol=1e-9
+    )
 
 
 def test_the_order_in_which_topics_arrive_changes_nothing_nor_what_was_before_a_reset(
@@ -155,5 +159,5 @@ def test_what_is_known_on_the_way_ends_near_what_all_of_it_tells(record, coarse_
     assert last.holds
     whole = live.finish(None)
     assert whole.fit.converged
-    assert np.max(np.abs(last.outcome.fit.values - whole.fit.values) / whole.std) < 0.5
-    np.testing.assert_allclose(last.outcome.std / whole.std, 1.0, atol=0.1)
+    assert np.max(np.abs(last.outcome.fit.values - whole.fit.values) / whole.estimate.std) < 0.5
+    np.testing.assert_allclose(last.outcome.estimate.std / whole.estimate.std, 1.0, atol=0.1)

@@ -117,9 +117,8 @@ def identify(
     ((12,), 2)
     """
     from trawl_ros.estimation.bag_motion import learn_from_motion, why_windows_alone
-    from trawl_ros.estimation.report.in_motion import report_in_motion
     from trawl_ros.estimation.report.page import write_report
-    from trawl_ros.estimation.report.report import report
+    from trawl_ros.estimation.report.report import report, report_in_motion
     from trawl_ros.scenario.scenario import true_coefficients
 
     if out is not None:

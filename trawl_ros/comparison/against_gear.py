@@ -12,7 +12,8 @@ from trawl_ros.comparison.rows import ErrorBudget, Rows
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.core.progress import OnProgress, WorkProgress
-from trawl_ros.estimation.fit.error_terms import Scheme, in_all_channels, tow_errors
+from trawl_ros.estimation.fit.error_terms import in_all_channels, tow_errors
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
 from trawl_ros.estimation.from_gear import board_prior, predictor_for
 from trawl_ros.estimation.screening import Screening
@@ -146,7 +147,7 @@ def _errors(
 
     After a change the slowest motion x decays as x' = -x / T, so the rest of it is T x'.
     """
-    tows = tow_errors(solved, Scheme())
+    tows = tow_errors(solved, EstimatorOptions())
     states = [linear.window.state for linear in solved]
     for tow in tows:
         for place, row in enumerate(tow.rows):
@@ -162,7 +163,7 @@ def _unsettled(linear: Linearised, decay_s: float, course: Course) -> float:
     depths = [name for name in DEPTHS if name in linear.channels]
     for name in depths:
         shape = abs(linear.slow[linear.channels.index(name)])
-        least = Scheme().unsettled * abs(linear.window.means[name])
+        least = EstimatorOptions().unsettled * abs(linear.window.means[name])
         drift = course.rate(name, linear.window.end_ns)
         if shape > 0.0:
             return float(np.hypot(least, decay_s * drift) / shape)

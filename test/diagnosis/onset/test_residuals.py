@@ -48,7 +48,7 @@ def linear(gear):
         np.full((STRETCHES, K, 11), 1.0 / 11.0), TowInputs(1.0, grid, grid, *grid.T[:2]),
     )  # fmt: skip
     point = TowedPoint(np.zeros(12), 0.0, np.zeros(len(INPUT_ERRORS)), np.zeros(0))
-    found = LinearisedTow.empty(tow, point, gear, ())
+    found = LinearisedTow.of(tow, point, gear, [], ())
     found.values[:] = 100.0
     return found
 

@@ -6,14 +6,12 @@ import zipfile
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
-from pkgutil import resolve_name
 
 import numpy as np
 import pytest
 
 from trawl_ros.estimation.checkpoint import file
 from trawl_ros.estimation.checkpoint.file import CheckpointError, load_checkpoint, save_checkpoint
-from trawl_ros.estimation.checkpoint.names import FIELDS, present
 from trawl_ros.estimation.checkpoint.packing import Packer, Unpacker
 from trawl_ros.estimation.from_gear import identification_for
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
@@ -266,76 +264,3 @@ def test_values_come_back_bit_by_bit(value):
     tree = json.loads(json.dumps(packer.pack(value)))
     found = Unpacker(bytes(packer.numbers), packer).unpack(tree)
     np.testing.assert_equal(found, value)
-
-
-NAMES_OF_0_1_0 = (
-    'identification.buffers.ChannelBuffer',
-    'identification.channels.Channel',
-    'identification.error_terms.TowErrors',
-    'identification.estimate.Combination',
-    'identification.estimate.Estimate',
-    'identification.estimate.Innovation',
-    'identification.estimate.TowBias',
-    'identification.estimator.Estimator',
-    'identification.estimator.Progress',
-    'identification.estimator_options.EstimatorOptions',
-    'identification.fit.Fit',
-    'identification.guard.Guard',
-    'identification.linearised.Linearised',
-    'identification.operation.Block',
-    'identification.operation.Operation',
-    'identification.order.Order',
-    'identification.over_ground.OverGround',
-    'identification.pipeline.Identification',
-    'identification.pipeline.WindowUsed',
-    'identification.prior.BoardPrior',
-    'identification.rejections.Rejections',
-    'identification.screening.Judgement',
-    'identification.screening.Screening',
-    'identification.timeline.Timeline',
-    'identification.window_records.SteadyWindow',
-    'identification.window_records.WindowOptions',
-    'identification.windows.SteadyWindowFinder',
-    'model.observables.Observables',
-    'model.state.State',
-    'model.state.Tow',
-    'solver.equilibrium.Equilibrium',
-    'solver.operating_point.OperatingPoint',
-)
-
-
-def with_names_alone(tree):
-    """A packed object of 0.1.0: priors had no groups, and nothing knew the water's depth."""
-    tree.pop('_sounder', None)
-    if 'track' in tree:
-        tree.pop('seabed')
-    if set(tree) == {'start', 'std', 'low', 'high', 'groups'}:
-        (group,) = tree.pop('groups')['tuple']
-        tree['names'] = group['has']['names']
-    return tree
-
-
-def test_a_file_of_0_1_0_is_read_by_the_names_that_classes_had(fresh, samples, state, gear):
-    former = {}
-    for name in NAMES_OF_0_1_0:
-        now, _ = present(f'trawl_ros.{name}', {})
-        module, _, own = now.rpartition('.')
-        assert isinstance(resolve_name(f'{module}:{own}'), type), name
-        former[now] = f'trawl_ros.{name}'
-    expected = load_checkpoint(state, fresh(), gear)
-    with zipfile.ZipFile(state) as archive:
-        record, numbers = archive.read(file.JSON).decode(), archive.read(file.NUMBERS)
-    for now, name in former.items():
-        record = record.replace(f'"{now}"', f'"{name}"')
-    record = json.dumps(json.loads(record, object_hook=with_names_alone))
-    for then, field in FIELDS.items():
-        record = record.replace(f'"{field}":', f'"{then}":')
-    assert 'trawl_ros.identification.' in record
-    assert 'trawl_ros.estimation.' not in record
-    with zipfile.ZipFile(state, 'w') as archive:
-        archive.writestr(file.JSON, record)
-        archive.writestr(file.NUMBERS, numbers)
-    found = load_checkpoint(state, fresh(), gear)
-    for sample in samples[len(samples) // 2 :]:
-        for one, other in zip(used(found.feed(sample)), used(expected.feed(sample)), strict=True):
-            same(one.estimate, other.estimate)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import GearError, NoSteadyState, TrawlError
-from trawl_ros.estimation.fit.error_terms import Scheme
 from trawl_ros.estimation.fit.estimate import posterior_of, undetermined
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
@@ -114,12 +113,12 @@ def test_an_innovation_is_told_before_the_window_is_used(sea, model, prior):
         window.means['door_spread'] - expected.values[row]
     )
     known = np.sum((expected.jacobian[row, :12] * prior.std) ** 2)
-    scheme = Scheme()
+    options = EstimatorOptions()
 
     def std(name):
         bias = window.bias[name]
-        changing = CHANNELS[name].state_std(bias, scheme.state_share)
-        return math.hypot(scheme.tow_share * bias, changing)
+        changing = CHANNELS[name].state_std(bias, options.state_share)
+        return math.hypot(options.tow_share * bias, changing)
 
     inputs = np.sum((expected.jacobian[row, 12:] * [std(name) for name in INPUTS]) ** 2)
     variance = known + inputs + std('door_spread') ** 2

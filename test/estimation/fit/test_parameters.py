@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from trawl_ros.core.errors import GearError
-from trawl_ros.estimation.fit.error_terms import CALIBRATION, GROUPS, TERMS, Scheme
+from trawl_ros.estimation.fit.error_terms import CALIBRATION, GROUPS, TERMS, model_errors
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.parameters import FARTHEST, ParameterGroup, ParameterVector
 from trawl_ros.records.coefficients import COEFFICIENTS
 
@@ -92,15 +93,15 @@ def test_it_cannot_be_changed(stall):
 
 
 @pytest.mark.parametrize(
-    ('scheme', 'number', 'net'),
+    ('options', 'number', 'net'),
     [
-        (Scheme(), len(GROUPS), slice(0, 0)),
-        (Scheme(model_trend=1.0), 2 * len(GROUPS), slice(0, 0)),
-        (Scheme(net_drag=0.2), len(GROUPS) + 2, slice(len(GROUPS), len(GROUPS) + 2)),
+        (EstimatorOptions(), len(GROUPS), slice(0, 0)),
+        (EstimatorOptions(model_trend=1.0), 2 * len(GROUPS), slice(0, 0)),
+        (EstimatorOptions(net_drag=0.2), len(GROUPS) + 2, slice(len(GROUPS), len(GROUPS) + 2)),
     ],
 )
-def test_errors_of_the_model_are_parameters_in_std(scheme, number, net):
-    errors = scheme.model_errors
+def test_errors_of_the_model_are_parameters_in_std(options, number, net):
+    errors = model_errors(options)
     assert len(errors) == number
     assert errors.slice_of('net') == net
     np.testing.assert_array_equal(errors.clipped(np.full(number, 9.0)), FARTHEST)

@@ -46,7 +46,7 @@ def fit_of(column, tows=1):
         linear=(SimpleNamespace(tow=tow),) * tows,
         data=LinearData((groups,) * tows, (no_log,) * tows, SHARED, ErrorTimes()),
         parameters=(np.zeros(OF_ERRORS.stop),) * tows, sizes=ErrorSizes(), net=(),
-        layouts=(SimpleNamespace(of_errors=OF_ERRORS),) * tows,
+        layouts=(SimpleNamespace(slices={'errors': OF_ERRORS}),) * tows,
     )  # fmt: skip
 
 

@@ -45,6 +45,11 @@ def towed(coarse, short_tow):
     return linearise_tow(TowedGear(coarse), short_tow, point)
 
 
+def by_knots(towed):
+    """Derivatives by the errors at all knots, input after input."""
+    return np.concatenate([towed.by[own.channel] for own in towed.tow.inputs.knots], axis=2)
+
+
 def changed(towed, model, **changes):
     """Change of the means, and what the derivatives say of it, in the noise of a stretch."""
     return changed_gear(towed, TowedGear(model), **changes)
@@ -54,13 +59,13 @@ def changed_gear(towed, gear, **changes):
     point = replace(towed.point, **changes)
     again = linearise_tow(gear, towed.tow, point)
     told = (
-        towed.by_errors @ point.errors
-        + towed.by_knots @ point.drifts
-        + towed.by_added_mass[..., 0] * point.added_mass
-        + towed.by_coefficients @ (point.coefficients - towed.point.coefficients)
+        towed.by['errors'] @ point.errors
+        + by_knots(towed) @ point.drifts
+        + towed.by['added_mass'][..., 0] * point.added_mass
+        + towed.by['coefficients'] @ (point.coefficients - towed.point.coefficients)
     )
-    if towed.by_net.size:
-        told = told + towed.by_net @ (point.net - towed.point.net)
+    if towed.by['net'].size:
+        told = told + towed.by['net'] @ (point.net - towed.point.net)
     return (again.values - towed.values) / towed.tow.noise, told / towed.tow.noise
 
 
@@ -94,7 +99,7 @@ def test_a_tow_has_the_effects_of_its_gear_and_its_sensors(laden):
         linear.values[:, cell], 1.05 * plain.values[:, cell] + 500.0, rtol=1e-9
     )
     np.testing.assert_allclose(
-        linear.by_coefficients[:, cell], 1.05 * plain.by_coefficients[:, cell], rtol=1e-6
+        linear.by['coefficients'][:, cell], 1.05 * plain.by['coefficients'][:, cell], rtol=1e-6
     )
     depth = linear.tow.channels.index('net_depth')
     np.testing.assert_allclose(linear.values[:, depth], plain.values[:, depth], rtol=1e-9)
@@ -113,7 +118,7 @@ def test_net_and_effects_that_are_looked_for_do_what_their_derivatives_say(laden
     )
     again = linearise_tow(fewer, linear.tow, linear.point)
     real = (again.values - linear.values) / linear.tow.noise
-    told = 0.01 * linear.by_examined[..., 0] / linear.tow.noise
+    told = 0.01 * linear.by['examined'][..., 0] / linear.tow.noise
     assert np.abs(real).max() > 0.1
     np.testing.assert_allclose(told, real, atol=0.02 * np.abs(real).max())
 
@@ -134,7 +139,7 @@ def test_an_error_of_the_log_is_left_in_slow_motions_when_another_takes_its_colu
     knots, _ = towed.tow.inputs.knots
     # It began to act a spacing before its knot.
     last = knots.columns - 1
-    assert towed.by_knots[last, :, knots.columns].any()
+    assert by_knots(towed)[last, :, knots.columns].any()
     drifts = np.zeros(towed.tow.inputs.number_of_knots)
     drifts[0] = 0.05
     real, told = (change[last:] for change in changed(towed, coarse, drifts=drifts))
@@ -151,9 +156,10 @@ def test_a_tow_that_grows_is_linearised_as_if_it_had_been_there_from_the_beginni
         )
         growing.extend(so_far, towed.point.drifts)
         assert len(growing) == number
-    for name, values in vars(growing.linearised(tow)).items():
-        if name.startswith('by_') or name == 'values':
-            np.testing.assert_array_equal(values, getattr(towed, name))
+    found = growing.linearised(tow)
+    np.testing.assert_array_equal(found.values, towed.values)
+    for name, slopes in found.by.items():
+        np.testing.assert_array_equal(slopes, towed.by[name])
 
 
 @pytest.mark.parametrize('error', range(len(INPUT_ERRORS)))
@@ -168,7 +174,7 @@ def test_a_counter_that_reads_too_long_has_the_gear_towed_on_less_warp(towed):
     depth = towed.tow.channels.index('port_door_depth')
     offset = [error.name for error in INPUT_ERRORS].index('port_length offset')
     starboard = [error.name for error in INPUT_ERRORS].index('starboard_length offset')
-    both = towed.by_errors[..., offset] + towed.by_errors[..., starboard]
+    both = towed.by['errors'][..., offset] + towed.by['errors'][..., starboard]
     assert np.all(both[:, depth] < 0.0)
 
 
@@ -204,8 +210,8 @@ def test_a_board_that_falls_costs_its_own_part_of_the_tow(coarse):
     assert list(np.flatnonzero(~there.towed)) == [*range(2, 18)]
     assert {part.why for part in there.left_out} == {BY_SENSOR}
     # The next steady part begins with unknown amplitudes of the slowest motions.
-    assert there.by_starts[18:, :, SLOW_MOTIONS].any(axis=1).all()
-    assert not there.by_starts[:2, :, SLOW_MOTIONS:].any()
+    assert there.by['starts'][18:, :, SLOW_MOTIONS].any(axis=1).all()
+    assert not there.by['starts'][:2, :, SLOW_MOTIONS:].any()
 
 
 def test_a_steady_part_goes_on_where_the_motion_before_it_ended(coarse):
@@ -219,8 +225,8 @@ def test_a_steady_part_goes_on_where_the_motion_before_it_ended(coarse):
     away = np.abs(chain.values - moving.values)[36:]
     assert np.abs(moving.values[42] - moving.values[36])[depths].max() > 1.0
     assert np.all(away < 1.5 * tow.noise[36:])
-    size = np.linalg.norm(moving.by_coefficients[36:])
-    assert np.linalg.norm((chain.by_coefficients - moving.by_coefficients)[36:]) < 0.05 * size
+    size = np.linalg.norm(moving.by['coefficients'][36:])
+    assert np.linalg.norm((chain.by['coefficients'] - moving.by['coefficients'])[36:]) < 0.05 * size
 
 
 def test_what_is_left_of_slow_motions_is_carried_through_a_steady_part(coarse):
@@ -234,8 +240,8 @@ def test_what_is_left_of_slow_motions_is_carried_through_a_steady_part(coarse):
     moving = linearise_tow(TowedGear(coarse), tow, point)
     chain = linearise_tow(TowedGear(coarse), replace(tow, held_s=held_s), point)
     assert np.all(np.abs(chain.values - moving.values) < 2.0 * tow.noise)
-    size = np.linalg.norm(moving.by_coefficients[36:])
-    assert np.linalg.norm((chain.by_coefficients - moving.by_coefficients)[36:]) < 0.05 * size
+    size = np.linalg.norm(moving.by['coefficients'][36:])
+    assert np.linalg.norm((chain.by['coefficients'] - moving.by['coefficients'])[36:]) < 0.05 * size
 
 
 def test_held_inputs_are_followed_in_longer_steps(coarse):
@@ -254,8 +260,8 @@ def test_held_inputs_are_followed_in_longer_steps(coarse):
         usual = linearise_tow(TowedGear(coarse), tow, point)
     np.testing.assert_array_equal(longer.values[:9], usual.values[:9])
     assert np.all(np.abs(longer.values - usual.values) < 0.5 * tow.noise)
-    away = np.linalg.norm(longer.by_coefficients - usual.by_coefficients)
-    assert 0.0 < away < 0.02 * np.linalg.norm(usual.by_coefficients)
+    away = np.linalg.norm(longer.by['coefficients'] - usual.by['coefficients'])
+    assert 0.0 < away < 0.02 * np.linalg.norm(usual.by['coefficients'])
 
 
 def test_steady_parts_alone_are_predicted_without_the_motion_between(coarse):
@@ -264,7 +270,7 @@ def test_steady_parts_alone_are_predicted_without_the_motion_between(coarse):
     there = linearise_tow(TowedGear(coarse), tow, point)
     assert list(np.flatnonzero(there.towed)) == [18, 19, 30, 31]
     assert tow.starts == 3 * SLOW_MOTIONS
-    begun = there.by_starts.reshape(*there.values.shape, 3, SLOW_MOTIONS).any(axis=(1, 3))
+    begun = there.by['starts'].reshape(*there.values.shape, 3, SLOW_MOTIONS).any(axis=(1, 3))
     assert [list(row) for row in begun[[18, 30]]] == [[False, True, False], [False, False, True]]
 
 
@@ -303,7 +309,7 @@ def test_stretches_in_which_derivatives_explode_are_left_out_and_told(coarse, mo
     tow, point = course_tow(100.0), TowedPoint(coarse.coefficients, 0.0, NO_ERRORS, NO_DRIFTS)
     usual = linearise_tow(TowedGear(coarse), tow, point)
     assert usual.towed.all()
-    sharp = np.abs(usual.by_coefficients) / tow.noise[..., None]
+    sharp = np.abs(usual.by['coefficients']) / tow.noise[..., None]
     assert sharp.max() < 0.1 * lineariser.UNSTABLE_DERIVATIVE
     silent = tow.noise.copy()
     silent[1, 0] = np.nan

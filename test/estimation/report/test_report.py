@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.report.figures import drawings
 from trawl_ros.estimation.report.holdout import hold_out
 from trawl_ros.estimation.report.page import report_page, write_report
 from trawl_ros.estimation.report.report import report
-from trawl_ros.estimation.report.residuals import residuals, solve_windows
+from trawl_ros.estimation.report.residuals import residuals
 from trawl_ros.estimation.report.result import result
 from trawl_ros.estimation.report.sensors import compare_sensors
 from trawl_ros.estimation.report.spectrum import spectrum
@@ -126,7 +127,7 @@ def test_residuals_are_measured_less_modelled(sea, model, prior, windows):
     exact = sea.trial_windows(model, np.random.default_rng(0), noise=0.0)
     for window in exact:
         window.means['vertical_opening'] += 3.0
-    parts = solve_windows(fitted(sea, model, prior, exact).estimator, sea.TRUTH)
+    parts = fitted(sea, model, prior, exact).estimator.solve(sea.TRUTH)
     found = {row.channel: row for row in residuals(parts)}
     opening, spread = found['vertical_opening'], found['door_spread']
     assert opening.mean == pytest.approx(3.0)
@@ -145,7 +146,7 @@ def test_residuals_are_measured_less_modelled(sea, model, prior, windows):
 
 def test_sensors_are_compared_in_units_of_the_field(sea, model, prior, windows):
     estimator = fitted(sea, model, prior, windows).estimator
-    start, end = (solve_windows(estimator, at) for at in (prior.start, sea.TRUTH))
+    start, end = (estimator.solve(at) for at in (prior.start, sea.TRUTH))
     found = {
         row.channel: row for row in compare_sensors({'start': [None, *start[1:]], 'refitted': end})
     }
@@ -176,7 +177,7 @@ def test_a_state_without_steady_state_is_tried_once(sea, model, windows):
     repeated = [*windows[:2], *(replace(window, index=9 + window.index) for window in windows[:2])]
     fit = SimpleNamespace(windows=repeated, predictor=model, observables=sea.OBSERVABLES)
     model.stops_at, model.calls = sea.TRUTH[0] - 1.0, 0
-    assert solve_windows(fit, sea.TRUTH) == [None] * 4
+    assert Estimator.solve(fit, sea.TRUTH) == [None] * 4
     # With unequal warps for one, and with equal ones, as a counter may be wrong.
     assert model.calls <= 2 * 2
 
@@ -193,7 +194,7 @@ def test_errors_as_stated_make_a_test_ratio_of_a_ninth(sea, model, windows):
             means = {name: means[name] + window.std(name) * rng.normal() for name in means}
             noisy.append(replace(window, means=means))
     fit = SimpleNamespace(windows=noisy, predictor=model, observables=sea.OBSERVABLES)
-    ratios = [row.test_ratio for row in residuals(solve_windows(fit, sea.TRUTH))]
+    ratios = [row.test_ratio for row in residuals(Estimator.solve(fit, sea.TRUTH))]
     np.testing.assert_allclose(ratios, 1.0 / 9.0, rtol=0.25)
 
 
@@ -240,7 +241,7 @@ def test_what_speaks_against_a_fit_is_listed(tows):
     scales = {**good.estimate.noise_scales, 'roll': 2.5}
     estimate = replace(
         good.estimate, converged=False, reason='still moving', noise_scales=scales,
-        active_bounds=('a1 at its lower bound 0',),
+        values=np.concatenate((good.prior.low[:1], good.estimate.values[1:])),
     )  # fmt: skip
     feet = {'wrong unit': 'door/port/pressure is plausible in feet'}
     bad = replace(good, estimate=estimate, residuals=(coloured,), found=feet)
@@ -249,7 +250,7 @@ def test_what_speaks_against_a_fit_is_listed(tows):
     words = coloured.channel.replace('_', ' ')
     for part in (
         'Refused, wrong unit: door/port/pressure is plausible in feet.',
-        'not converged: still moving', 'a1 at its lower bound 0',
+        'not converged: still moving', f'a1 at its lower bound {good.prior.low[0]:g}',
         f'beyond what the stated errors allow in {words} (test ratio {coloured.test_ratio:.1f})',
         f'follow each other, rather than scatter, in {words}', 'roll (2.5 times)',
     ):  # fmt: skip

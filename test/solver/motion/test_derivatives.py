@@ -11,7 +11,8 @@ import pytest
 from trawl_ros.diagnosis.inference.candidates import Candidate
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
-from trawl_ros.estimation.fit.error_terms import Scheme
+from trawl_ros.estimation.fit.error_terms import model_errors
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.model.observables import observe
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -231,7 +232,7 @@ def test_derivatives_over_ten_minutes(
 
 def test_names_are_those_of_a_fit(quick: Differentiated) -> None:
     effects = [Candidate(catalogue()[name], np.zeros(0)).group for name in EFFECTS]
-    net = Scheme(net_drag=0.2, net_weight=0.2).model_errors.only('net')
+    net = model_errors(EstimatorOptions(net_drag=0.2, net_weight=0.2)).only('net')
     expected = (*COEFFICIENTS, *net.names, *(name for group in effects for name in group.names))
     assert PARAMETERS.names[:21] == expected
     assert quick.slopes.shape[2] == len(PARAMETERS)

@@ -129,7 +129,7 @@ def _rows(
     """
     usual = columns(linear, layout, gear.prior.std)
     longer = np.log(_lengths(linear.tow) / USUAL_LENGTH) / np.log(LONGER)
-    trends = longer[:, None, None] * usual[..., layout.of_model]
+    trends = longer[:, None, None] * usual[..., layout.slices['model']]
     effects = _by_values(gear.watched, linear) * gear.units
     own, first = (usual, trends, effects), layout.shared
     every = np.concatenate((own[0][..., :first], *own[1:], own[0][..., first:]), axis=-1)
@@ -154,9 +154,9 @@ def _by_values(watched: WatchedGear, linear: LinearisedTow) -> FloatArray:
     number = sum(len(effect.parameters) for effect in watched.effects)
     found = np.zeros((len(tow), len(places), number))
     for stretch in np.flatnonzero(linear.towed):
-        moved = np.zeros((len(WATCHED), linear.by_examined.shape[-1]))
+        moved = np.zeros((len(WATCHED), linear.by['examined'].shape[-1]))
         shown = np.zeros(len(WATCHED))
-        moved[places], shown[places] = linear.by_examined[stretch], linear.values[stretch]
+        moved[places], shown[places] = linear.by['examined'][stretch], linear.values[stretch]
         at = inputs(float(tow.middles[stretch])).situation
         found[stretch] = watched.by_values(moved, shown, at)[places]
     return found

@@ -171,8 +171,8 @@ def run_motion_trial(task: MotionTask) -> MotionTrial:
         refused = str(reason)
     cpu_s = time.process_time() - begun
     unseen = steady_windows([plant.held_out], AS_STATED, rng, first_tow=1)
-    whole = estimate if learned is None else learned
-    both = (estimate.values, estimate.values if learned is None else learned.fit.values)
+    whole = estimate if learned is None else learned.estimate
+    both = (estimate.values, whole.values)
     covariances = estimate.covariance, whole.covariance
     predictions = [
         identification.estimator.predictions(values, unseen)

@@ -105,7 +105,7 @@ class ResidualRows:
 def lasting_flags(layout: TowLayout) -> BoolArray:
     """Return flags (p,) of the parameters that last beyond a part of a tow."""
     flags = np.ones(len(layout), np.bool_)
-    flags[layout.of_starts] = flags[layout.of_knots] = False
+    flags[layout.slices['starts']] = flags[layout.of_knots] = False
     return flags
 
 
@@ -164,7 +164,7 @@ def residual_rows(
     passing = np.hstack(((slopes * std)[:, ~lasting], absorbed[place]))
     own_columns = slopes[:, lasting] @ belief.root
     everything = np.hstack((own_columns, passing))
-    shift = linear.by_coefficients @ (linear.point.coefficients - known.values)
+    shift = linear.by['coefficients'] @ (linear.point.coefficients - known.values)
     residual = (linear.residual + shift)[place] - slopes[:, lasting] @ belief.mean
     covariance = of_errors[np.ix_(order, order)] + everything @ everything.T
     return ResidualRows(*place, model[order], residual, own_columns, covariance)

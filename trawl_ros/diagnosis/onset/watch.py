@@ -289,7 +289,7 @@ class Watch:
             own = rows.stretches == stretch
             self._counts.append(int(own.sum()))
             if own.any():
-                moved = linear.by_coefficients[stretch, rows.channels[own]]
+                moved = linear.by['coefficients'][stretch, rows.channels[own]]
                 found = self._compare(rows.of(own), stretch, float(unrest[stretch]), moved)
             else:
                 self._bank.step(None, np.zeros(0), float(unrest[stretch]))
@@ -331,8 +331,8 @@ class Watch:
         """Return the derivatives (k, p) of a stretch by the values of all effects."""
         tow = linear.tow
         at = without_errors(tow.inputs)(float(tow.middles[stretch])).situation
-        values = np.nan_to_num(linear.values[stretch])
-        return self._own.gear.by_values(linear.by_examined[stretch], values, replace(at, hours=1.0))
+        values, by = np.nan_to_num(linear.values[stretch]), linear.by['examined'][stretch]
+        return self._own.gear.by_values(by, values, replace(at, hours=1.0))
 
     def _absorbed(self, tow: MovingTow, responses: OnsetResponses) -> FloatArray:
         """Return the signatures (n, k, a) of what has been found before, per prior std."""

@@ -30,8 +30,6 @@ from trawl_ros.records.channels import CHANNELS
 
 WHAT = 'state of an identification'
 FORMAT = 1
-FIRST = '0.1.0'
-"""Version whose checkpoints resume too; its names are those of `names`."""
 
 MAX_BYTES = 500_000_000
 """Some thousand windows of a gear in full detail."""
@@ -121,7 +119,7 @@ def load_checkpoint(path: Path, fresh: Identification, gear: GearRecord) -> Iden
         made_by = record['format'], record['version']
     except (LookupError, TypeError, ValueError, RecursionError) as reason:
         raise CheckpointError(f'{unfit} ({reason})') from reason
-    if made_by not in ((FORMAT, FIRST), (FORMAT, __version__)):
+    if made_by != (FORMAT, __version__):
         raise CheckpointError(
             f'{path}: the state is of format {made_by[0]} by version {made_by[1]}, expected '
             f'format {FORMAT} by version {__version__}'

@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
-from trawl_ros.estimation.checkpoint.names import present
 
 PACKAGES = ('trawl_ros.estimation.', 'trawl_ros.records.', 'trawl_ros.model.', 'trawl_ros.solver.')
 """Packages whose classes may stand in a checkpoint."""
@@ -158,7 +157,7 @@ class Unpacker:
         return made
 
     def _object(self, tree: dict[str, Any], number: int) -> Any:
-        name, has = present(tree['object'], tree['has'])
+        name, has = tree['object'], tree['has']
         kind = _class(name)
         now = self._fresh.attributes.get(name)
         if now is None and is_dataclass(kind):

@@ -37,11 +37,6 @@ class ErrorStack:
     shared: FloatArray
     columns: FloatArray
 
-    @property
-    def residual(self) -> FloatArray:
-        """Residuals (t, n, k), 0 where there is no reading."""
-        return self.columns[..., -1]
-
 
 def stacked(
     tows: Sequence[TowErrors], scales: FloatArray, residual: FloatArray, jacobian: FloatArray

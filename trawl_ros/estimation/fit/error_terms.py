@@ -47,84 +47,61 @@ which the trend is one unit."""
 
 
 @dataclass(frozen=True)
-class Scheme:
-    """Error scheme: division of errors among readings, steady states, tows and model.
+class ChannelError:
+    """Error of a channel that is constant through the tow: measured minus true.
 
     Attributes
     ----------
-    state_share
-        Fraction of the std of a channel's bias that changes from one steady state to the next, if
-        the channel table has no measured value (`Channel.state_std`). The rest stays constant
-        through the tow. 0: nothing changes with the state.
-    model_error
-        Factor on the errors of the model; 0 for an exact model.
-    model_trend
-        Change of these errors, in std, if warps are `LONGER` times as long.
-    net_drag, net_weight
-        Std of the factors on drag and weight in water of the net; both 0 hold the net.
-    unsettled
-        Std of the remaining change of depth in a steady window, as a fraction of the net's depth.
-    """
-
-    state_share: float = 0.3
-    model_error: float = 1.0
-    model_trend: float = 0.0
-    unsettled: float = 0.05
-    net_drag: float = 0.0
-    net_weight: float = 0.0
-
-    @classmethod
-    def of(cls, options: EstimatorOptions) -> 'Scheme':
-        """Error scheme of an estimator's options."""
-        return cls(
-            options.state_share,
-            options.model_error,
-            options.model_trend,
-            options.unsettled,
-            options.net_drag,
-            options.net_weight,
-        )
-
-    @property
-    def net_std(self) -> FloatArray:
-        """Prior std of the net's factors (2,) on drag and weight."""
-        return np.array([self.net_drag, self.net_weight])
-
-    @property
-    def model_errors(self) -> ParameterVector:
-        """Errors of the model: one per group, then of their trends, and the net's factors."""
-        return _model_errors(self.model_trend != 0.0, bool(self.net_std.any()))
-
-    @property
-    def tow_share(self) -> float:
-        """Part of a bias in std that stays through the tow."""
-        return float(np.sqrt(1.0 - self.state_share**2))
-
-
-@dataclass(frozen=True)
-class ErrorTerm:
-    """Calibration error of a channel or input, and its std.
-
-    ``relative`` errors are fractions of the value, others are in the channel's unit.
+    channel
+        Name of the channel.
+    std
+        Prior std, in the channel's unit, or as a fraction of the value if ``relative``.
+    relative
+        True for a scale error, False for an offset.
     """
 
     channel: str
     std: float
     relative: bool
 
+    @property
+    def name(self) -> str:
+        """Name of the parameter."""
+        return f'{self.channel} {"scale" if self.relative else "offset"}'
 
-TERMS = tuple(
-    ErrorTerm(name, std, relative)
-    for name in (*MEASURED, *INPUTS)
-    for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
-    if std > 0.0
-)
+    def size(self, value: float) -> float:
+        """Std of the error at a value of the channel, in its unit."""
+        return self.std * (value if self.relative else 1.0)
+
+
+def channel_errors(channels: Sequence[str]) -> tuple[ChannelError, ...]:
+    """Return the constant errors of channels that the channel table gives a std for."""
+    return tuple(
+        ChannelError(name, std, relative)
+        for name in channels
+        for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
+        if std > 0.0
+    )
+
+
+TERMS = channel_errors((*MEASURED, *INPUTS))
 """Errors of calibration of one tow."""
 
 CALIBRATION = nuisance(
     ParameterGroup('calibration', tuple(term.channel for term in TERMS), ('std',) * len(TERMS))
 )
 """`TERMS` as parameters."""
+
+
+def model_std(channel: str, values: FloatArray) -> FloatArray:
+    """Std (n,) of the model's error in predicted values (n,) of a channel."""
+    angle = CHANNELS[channel].unit == 'rad'
+    return np.full(len(values), MODEL_ANGLE) if angle else MODEL_FRACTION * np.abs(values)
+
+
+def model_errors(options: EstimatorOptions) -> ParameterVector:
+    """Errors of the model: one per group, then of their trends, and the net's factors."""
+    return _model_errors(options.model_trend != 0.0, bool(options.net_std.any()))
 
 
 @cache
@@ -161,7 +138,7 @@ class TowErrors:
     input_calibration : (n, 3, p) array
         Change of the measured warp lengths and speed by one std of each of `TERMS`.
     model : (n, k, m) array
-        Change of the reading by one std of each of `Scheme.model_errors`.
+        Change of the reading by one std of each of `model_errors`.
     """
 
     rows: IntArray
@@ -190,15 +167,17 @@ def in_all_channels(linear: Linearised, values: FloatArray) -> FloatArray:
     return full
 
 
-def tow_errors(linearised: Sequence[Linearised], scheme: Scheme) -> tuple[TowErrors, ...]:
+def tow_errors(
+    linearised: Sequence[Linearised], options: EstimatorOptions
+) -> tuple[TowErrors, ...]:
     """Return the errors of all windows, tow by tow.
 
     Parameters
     ----------
     linearised
         Linearised windows of any tows.
-    scheme
-        Scheme of the errors.
+    options
+        How errors are divided among readings, steady states, tows and model.
     """
     states = [linear.window.state for linear in linearised]
     in_state = {state: states.count(state) for state in set(states)}
@@ -207,7 +186,7 @@ def tow_errors(linearised: Sequence[Linearised], scheme: Scheme) -> tuple[TowErr
     for row, linear in enumerate(linearised):
         tows.setdefault(linear.window.tow, []).append(row)
     return tuple(
-        _of_one_tow(rows, [linearised[row] for row in rows], in_state, usual, scheme)
+        _of_one_tow(rows, [linearised[row] for row in rows], in_state, usual, options)
         for _, rows in sorted(tows.items())
     )
 
@@ -217,37 +196,26 @@ def _of_one_tow(
     linearised: Sequence[Linearised],
     in_state: Mapping[int, int],
     usual: Mapping[str, float],
-    scheme: Scheme,
+    options: EstimatorOptions,
 ) -> TowErrors:
     present = np.array([[name in linear.channels for name in MEASURED] for linear in linearised])
     by_inputs = np.array([in_all_channels(linear, linear.by_inputs) for linear in linearised])
-    own = np.array(
-        [
-            [_own_std(linear, name, in_state, usual, scheme) for name in MEASURED]
-            for linear in linearised
-        ]
-    )
-    alone = np.array(
-        [[_own_std(linear, name, {linear.window.state: 1}, usual, scheme) for name in MEASURED]
-         for linear in linearised]
-    )  # fmt: skip
-    input_std = np.array(
-        [
-            [_own_std(linear, name, in_state, usual, scheme) for name in INPUTS]
-            for linear in linearised
-        ]
-    )
-    slow = np.array([_unsettled(linear, in_state, scheme) for linear in linearised])
+    noise, state = np.array([_variances(one, usual, options) for one in linearised]).swapaxes(0, 1)
+    # All windows of a state share its offset. Times their number, their mean keeps its variance.
+    number = np.array([in_state[linear.window.state] for linear in linearised])[:, None]
+    variance, alone = noise + number * state, noise + state
+    std, k = np.sqrt(variance), len(MEASURED)
+    slow = np.array([_unsettled(linear, in_state, options) for linear in linearised])
     return TowErrors(
         rows=np.array(rows),
         present=present,
-        noise=own,
-        numbers=present * alone**2 / own**2,
-        inputs=np.concatenate((by_inputs * input_std[:, None, :], slow[:, :, None]), axis=2),
-        input_std=input_std,
-        calibration=np.array([_calibration(linear, scheme) for linear in linearised]),
-        input_calibration=np.array([_of_inputs(linear, scheme) for linear in linearised]),
-        model=np.array([_model(linear, scheme) for linear in linearised]),
+        noise=std[:, :k],
+        numbers=present * alone[:, :k] / variance[:, :k],
+        inputs=np.concatenate((by_inputs * std[:, None, k:], slow[:, :, None]), axis=2),
+        input_std=std[:, k:],
+        calibration=np.array([_calibration(linear, options) for linear in linearised]),
+        input_calibration=np.array([_of_inputs(linear, options) for linear in linearised]),
+        model=np.array([_model(linear, options) for linear in linearised]),
     )
 
 
@@ -260,65 +228,66 @@ def _usual_noise(windows: Sequence[SteadyWindow]) -> dict[str, float]:
     return {group: float(np.median(noise)) for group, noise in by_group.items()}
 
 
-def _own_std(
-    linear: Linearised,
-    name: str,
-    in_state: Mapping[int, int],
-    usual: Mapping[str, float],
-    scheme: Scheme,
-) -> float:
-    window = linear.window
-    if name not in window.means or (name in MEASURED and name not in linear.channels):
-        return 1.0
-    # All windows of a state share its offset. Times their number, their mean keeps its variance.
-    state_std = CHANNELS[name].state_std(window.bias[name], scheme.state_share)
-    changing = in_state[window.state] * state_std**2
-    # About thirty readings measure their noise badly; a small value may be chance.
-    noise = window.own_noise(name, usual[group_of(name)])
-    return float(np.sqrt(noise**2 + changing))
+def _variances(
+    linear: Linearised, usual: Mapping[str, float], options: EstimatorOptions
+) -> FloatArray:
+    """Variances (2, channels and inputs) of the noise and of the offset in a window's state.
+
+    Where there is no reading they are 1 and 0.
+    """
+    window, found = linear.window, np.zeros((2, len(MEASURED) + len(INPUTS)))
+    for column, name in enumerate((*MEASURED, *INPUTS)):
+        if name not in linear.channels and name not in INPUTS:
+            found[0, column] = 1.0
+            continue
+        # About thirty readings measure their noise badly; a small value may be chance.
+        noise = window.own_noise(name, usual[group_of(name)])
+        offset = CHANNELS[name].state_std(window.bias[name], options.state_share)
+        found[:, column] = noise**2, offset**2
+    return found
 
 
-def _unsettled(linear: Linearised, in_state: Mapping[int, int], scheme: Scheme) -> FloatArray:
+def _unsettled(
+    linear: Linearised, in_state: Mapping[int, int], options: EstimatorOptions
+) -> FloatArray:
     depth = linear.window.means.get('net_depth', 0.0)
-    # Windows of one state settle together, so their number is a factor as in `_own_std`.
-    size = scheme.unsettled * abs(depth) * np.sqrt(in_state[linear.window.state])
+    # Windows of one state settle together, so their number is a factor as in `_of_one_tow`.
+    size = options.unsettled * abs(depth) * np.sqrt(in_state[linear.window.state])
     return in_all_channels(linear, size * linear.slow)
 
 
-def _calibration(linear: Linearised, scheme: Scheme) -> FloatArray:
+def _calibration(linear: Linearised, options: EstimatorOptions) -> FloatArray:
     # An input that reads too large changes the prediction, not the reading.
-    columns = -in_all_channels(linear, linear.by_inputs) @ _of_inputs(linear, scheme)
+    columns = -in_all_channels(linear, linear.by_inputs) @ _of_inputs(linear, options)
     for column, term in enumerate(TERMS):
         if term.channel in linear.channels:
-            columns[MEASURED.index(term.channel), column] = _size(linear, term, scheme)
+            columns[MEASURED.index(term.channel), column] = _size(linear, term, options)
     return columns
 
 
-def _of_inputs(linear: Linearised, scheme: Scheme) -> FloatArray:
+def _of_inputs(linear: Linearised, options: EstimatorOptions) -> FloatArray:
     columns = np.zeros((len(INPUTS), len(TERMS)))
     for column, term in enumerate(TERMS):
         if term.channel in INPUTS:
-            columns[INPUTS.index(term.channel), column] = _size(linear, term, scheme)
+            columns[INPUTS.index(term.channel), column] = _size(linear, term, options)
     return columns
 
 
-def _size(linear: Linearised, term: ErrorTerm, scheme: Scheme) -> float:
-    mean = linear.window.means[term.channel]
-    return scheme.tow_share * term.std * (mean if term.relative else 1.0)
+def _size(linear: Linearised, term: ChannelError, options: EstimatorOptions) -> float:
+    return options.tow_share * term.size(linear.window.means[term.channel])
 
 
-def _model(linear: Linearised, scheme: Scheme) -> FloatArray:
+def _model(linear: Linearised, options: EstimatorOptions) -> FloatArray:
     columns = np.zeros((len(MEASURED), len(GROUPS)))
     for name, value in zip(linear.channels, linear.values, strict=True):
         row = MEASURED.index(name)
-        size = MODEL_ANGLE if CHANNELS[name].unit == 'rad' else MODEL_FRACTION * abs(value)
-        columns[row, GROUP_OF[row]] = scheme.model_error * size
-    if scheme.model_trend:
+        columns[row, GROUP_OF[row]] = options.model_error * model_std(name, np.array([value]))[0]
+    if options.model_trend:
         length = 0.5 * (
             linear.window.means['port_length'] + linear.window.means['starboard_length']
         )
         longer = np.log(length / USUAL_LENGTH) / np.log(LONGER)
-        columns = np.hstack((columns, scheme.model_trend * longer * columns))
-    if not scheme.net_std.any():
+        columns = np.hstack((columns, options.model_trend * longer * columns))
+    if not options.net_std.any():
         return columns
-    return np.hstack((columns, in_all_channels(linear, linear.by_net) * scheme.net_std))
+    return np.hstack((columns, in_all_channels(linear, linear.by_net) * options.net_std))

@@ -3,7 +3,8 @@
 """Posterior estimate after a window: values, covariance, and undetermined combinations."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from scipy.special import stdtrit
@@ -110,25 +111,20 @@ class Estimate:
 
     Attributes
     ----------
-    names
-        Names (q,) of the coefficients.
+    prior
+        Prior of the coefficients.
     revision
         Counts estimates since the last reset.
     stamp
         End (ns) of the newest window.
-    values, std, covariance
-        Estimate (q,), standard deviations (q,), covariance (q, q). Noise as found and
-        ``birge_ratio`` are in them.
-    low, high
-        95 % interval (q,) by Student's t, cut at the bounds.
-    shrink
-        1 − std/prior std (q,): 0 where the data said nothing, 1 where they said all.
-    determined
-        True if the data determine each coefficient: std at most 20 % of the value or of the
-        prior's std, whichever is more, and at most half the prior's std, so that a narrow
-        prior alone determines nothing.
-    active_bounds
-        Bounds the estimate rests on, by name.
+    windows
+        Number of windows; 0 for a whole tow.
+    values, covariance
+        Estimate (q,) and covariance (q, q). Noise as found and ``birge_ratio`` are in it.
+    cost
+        Robust cost with the prior; ``objective`` is eq. 35.
+    converged, reason
+        True if the iteration has converged, and the criterion.
     condition_number
         Of the sensitivities, in units of readings' std per prior std, from the data alone.
     undetermined
@@ -140,43 +136,87 @@ class Estimate:
         Biases of the instruments of each tow.
     net
         Drag and weight of the net; empty where they are held.
-    degrees_of_freedom
-        Degrees of freedom of Student's t.
+    degrees_of_freedom, confidence
+        Degrees of freedom of Student's t; probability of the intervals.
     birge_ratio
         By how much standard deviations are widened, since the readings differ from the model by
         more than all errors known of explain; 1 where they do not.
-    cost
-        Robust cost with the prior; ``objective`` is eq. 35.
     innovation
         Of the newest window; None after a fit of all windows together.
-    converged, reason
-        True if the iteration has converged, and the criterion.
     """
 
-    names: tuple[str, ...]
+    prior: ParameterVector
     revision: int
     stamp: int
     windows: int
     values: FloatArray
-    std: FloatArray
     covariance: FloatArray
-    low: FloatArray
-    high: FloatArray
-    shrink: FloatArray
-    determined: tuple[bool, ...]
-    active_bounds: tuple[str, ...]
-    condition_number: float
-    undetermined: tuple[Combination, ...]
-    noise_scales: Mapping[str, float]
-    tow_biases: tuple[TowBias, ...]
-    net: tuple[NetFactor, ...]
-    degrees_of_freedom: float
-    birge_ratio: float
     cost: float
-    objective: float
-    innovation: Innovation | None
     converged: bool
     reason: str
+    condition_number: float = float('nan')
+    undetermined: tuple[Combination, ...] = ()
+    noise_scales: Mapping[str, float] = field(default_factory=dict)
+    tow_biases: tuple[TowBias, ...] = ()
+    net: tuple[NetFactor, ...] = ()
+    degrees_of_freedom: float = float('inf')
+    confidence: float = 0.95
+    birge_ratio: float = 1.0
+    objective: float = float('nan')
+    innovation: Innovation | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names (q,) of the coefficients."""
+        return self.prior.names
+
+    @cached_property
+    def std(self) -> FloatArray:
+        """Standard deviations (q,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def low(self) -> FloatArray:
+        """Lower ends (q,) of the intervals by Student's t, cut at the bounds."""
+        return np.maximum(self.values - self._half, self.prior.low)
+
+    @property
+    def high(self) -> FloatArray:
+        """Upper ends (q,) of the intervals."""
+        return np.minimum(self.values + self._half, self.prior.high)
+
+    @property
+    def _half(self) -> FloatArray:
+        return float(stdtrit(self.degrees_of_freedom, 0.5 + 0.5 * self.confidence)) * self.std
+
+    @property
+    def shrink(self) -> FloatArray:
+        """1 - std/prior std (q,): 0 where the data said nothing, 1 where they said all."""
+        return 1.0 - self.std / self.prior.std
+
+    @property
+    def determined(self) -> tuple[bool, ...]:
+        """Flags of the coefficients that the data determine.
+
+        Their std is at most 20 % of the value or of the prior's std, whichever is more, and at most
+        half the prior's std, so that a narrow prior alone determines nothing.
+        """
+        scale = np.maximum(np.abs(self.values), self.prior.std)
+        well = self.std <= DETERMINED_FRACTION * scale
+        well &= self.std <= DETERMINED_SHRINK * self.prior.std
+        return tuple(map(bool, well))
+
+    @property
+    def active_bounds(self) -> tuple[str, ...]:
+        """Bounds the estimate rests on, by name."""
+        prior, active = self.prior, []
+        at_low, at_high = prior.on_bounds(self.values)
+        for i, name in enumerate(prior.names):
+            if at_low[i]:
+                active.append(f'{name} at its lower bound {prior.low[i]:g}')
+            elif at_high[i]:
+                active.append(f'{name} at its upper bound {prior.high[i]:g}')
+        return tuple(active)
 
     @property
     def noise_scale(self) -> float:
@@ -242,34 +282,3 @@ def _varimax(basis: FloatArray) -> FloatArray:
             break
         previous = total
     return rotated
-
-
-def is_determined(values: FloatArray, std: FloatArray, prior: ParameterVector) -> tuple[bool, ...]:
-    """Flags of the coefficients that the data determine; the rule stands at `Estimate`."""
-    scale = np.maximum(np.abs(values), prior.std)
-    well = (std <= DETERMINED_FRACTION * scale) & (std <= DETERMINED_SHRINK * prior.std)
-    return tuple(bool(flag) for flag in well)
-
-
-def active_bounds(values: FloatArray, prior: ParameterVector) -> tuple[str, ...]:
-    """Names of the active bounds."""
-    at_low, at_high = prior.on_bounds(values)
-    active = []
-    for i, name in enumerate(prior.names):
-        if at_low[i]:
-            active.append(f'{name} at its lower bound {prior.low[i]:g}')
-        elif at_high[i]:
-            active.append(f'{name} at its upper bound {prior.high[i]:g}')
-    return tuple(active)
-
-
-def interval(
-    values: FloatArray,
-    std: FloatArray,
-    degrees_of_freedom: float,
-    confidence: float,
-    prior: ParameterVector,
-) -> tuple[FloatArray, FloatArray]:
-    """Student's interval (q,), (q,) around the values, cut at the bounds."""
-    half = float(stdtrit(degrees_of_freedom, 0.5 + 0.5 * confidence)) * std
-    return np.maximum(values - half, prior.low), np.minimum(values + half, prior.high)

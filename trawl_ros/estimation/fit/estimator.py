@@ -19,8 +19,13 @@ from trawl_ros.estimation.fit.estimate import Estimate, Innovation
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import AS_STATED, Fit
 from trawl_ros.estimation.fit.fitted_estimate import innovation_of, posterior_estimate
-from trawl_ros.estimation.fit.linearised import Linearised, linearise, measured_inputs
-from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, paper_values, stack
+from trawl_ros.estimation.fit.linearised import (
+    Linearised,
+    linearise,
+    measured_inputs,
+    nearest_state,
+    paper_rows,
+)
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.fit.prediction import SteadyPredictor
 from trawl_ros.estimation.fit.standing import standing_starts
@@ -192,18 +197,62 @@ class Estimator:
         -------
         (n, 4) array in the order of `PAPER_CHANNELS`, NaN where there is no steady state.
         """
-        rows = []
-        for number, window in enumerate(self.windows if windows is None else windows):
-            measured = measured_inputs(window)
-            there = measured if inputs is None else inputs[number]
+        windows = self.windows if windows is None else windows
+        net = self._fit.net if net is None else net
+        near = [state for window in windows for state in nearest_state(window, self._fit.windows)]
+        return paper_rows(self.solve(coefficients, windows, net, inputs, near), inputs)
+
+    def solve(
+        self,
+        coefficients: FloatArray,
+        windows: Sequence[SteadyWindow] | None = None,
+        net: FloatArray | None = None,
+        inputs: FloatArray | None = None,
+        own: Sequence['Equilibrium'] = (),
+    ) -> list[Linearised | None]:
+        """Solve the model at the inputs of each window.
+
+        It is solved from its own state where that is known, else from the nearest one already
+        solved.
+
+        Parameters
+        ----------
+        coefficients
+            Shape (q,).
+        windows
+            Windows (n); those of the fit if None.
+        net
+            Factors (2,) on drag and weight of the net; as in the gear file if None.
+        inputs
+            Warp lengths and speed (n, 3); as measured if None.
+        own
+            Steady states of the windows at these coefficients or nearby.
+
+        Returns
+        -------
+        list
+            In the order of the windows; None where the model has no steady state.
+        """
+        windows = self.windows if windows is None else windows
+        found: list[Linearised | None] = []
+        without: set[int] = set()
+        for row, window in enumerate(windows):
+            if window.state in without:
+                # It takes long to find that there is none, and is the same throughout a state.
+                found.append(None)
+                continue
+            starts = (*own[row : row + 1], *nearest_state(window, found), None)
+            place = None if inputs is None else inputs[row]
             try:
-                linear = self._linearise(window, coefficients, there, net=net)
+                linear = linearise(
+                    self.predictor, self.observables, window, coefficients, starts, place, net
+                )
             except NoSteadyState:
-                rows.append(np.full(len(PAPER_CHANNELS), np.nan))
+                without.add(window.state)
+                found.append(None)
             else:
-                values = linear.solved + linear.by_inputs @ (there - measured)
-                rows.append(paper_values(dict(zip(linear.channels, values, strict=True))))
-        return stack(rows)
+                found.append(linear)
+        return found
 
     def inputs_of(self, windows: Sequence[SteadyWindow]) -> FloatArray:
         """Warp lengths and speed (n, 3) of windows, corrected for errors as they are estimated."""
@@ -232,23 +281,12 @@ class Estimator:
         *,
         start: 'Equilibrium | None' = None,
         near: Sequence[Linearised] = (),
-        net: FloatArray | None = None,
     ) -> Linearised:
         """Linearise the model at a window, from a given state or that of the nearest window."""
-        net = self._fit.net if net is None else net
-
-        def distance(linear: Linearised) -> float:
-            return sum(
-                abs(window.means[name] / linear.window.means[name] - 1.0)
-                for name in ('port_length', 'starboard_length', 'speed')
-            )
-
-        starts: list[Equilibrium | None] = [] if start is None else [start]
-        if known := (*self._fit.windows, *near):
-            starts.append(min(known, key=distance).state)
-        starts.append(None)
+        given = () if start is None else (start,)
+        starts = (*given, *nearest_state(window, (*self._fit.windows, *near)), None)
         return linearise(
-            self.predictor, self.observables, window, coefficients, starts, inputs, net
+            self.predictor, self.observables, window, coefficients, starts, inputs, self._fit.net
         )
 
     def _stood(self, window: SteadyWindow) -> Linearised | None:

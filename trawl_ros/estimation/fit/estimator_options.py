@@ -4,6 +4,9 @@
 
 from dataclasses import dataclass, fields
 
+import numpy as np
+
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
 
 MAY_BE_ZERO = (
@@ -32,8 +35,16 @@ class EstimatorOptions:
         same factor in all of them.
     least_noise
         Noise is never taken to be less than this part of what is stated.
-    state_share, model_error, model_trend, unsettled
-        Scheme of the errors, as in `trawl_ros.estimation.fit.error_terms.Scheme`.
+    state_share
+        Fraction of the std of a channel's bias that changes from one steady state to the next, if
+        the channel table has no measured value (`Channel.state_std`). The rest stays constant
+        through the tow. 0: nothing changes with the state.
+    model_error
+        Factor on the errors of the model; 0 for an exact model.
+    model_trend
+        Change of these errors, in std, if warps are `LONGER` times as long.
+    unsettled
+        Std of the remaining change of depth in a steady window, as a fraction of the net's depth.
     net_drag, net_weight
         Std of factors on drag and weight in water of the net, which are then estimated along; where
         both are 0 the net is held as the gear file has it.
@@ -90,3 +101,13 @@ class EstimatorOptions:
         for name in ('confidence', 'state_share', 'set_aside'):
             if not (value := getattr(self, name)) < 1.0:
                 raise TrawlError(f'{name} is {value}, expected a number below 1')
+
+    @property
+    def net_std(self) -> FloatArray:
+        """Prior std of the net's factors (2,) on drag and weight."""
+        return np.array([self.net_drag, self.net_weight])
+
+    @property
+    def tow_share(self) -> float:
+        """Part of a bias in std that stays through the tow."""
+        return float(np.sqrt(1.0 - self.state_share**2))

@@ -12,9 +12,9 @@ from trawl_ros.estimation.fit.error_terms import (
     CALIBRATION,
     GROUP_OF,
     GROUPS,
-    Scheme,
     TowErrors,
     in_all_channels,
+    model_errors,
     tow_errors,
 )
 from trawl_ros.estimation.fit.estimate import Posterior, posterior_of
@@ -59,24 +59,19 @@ class Fit:
         """Errors of the readings, tow by tow."""
         known = self.known
         if known is None or known[0] is not self.windows or known[1] is not self.options:
-            known = (self.windows, self.options, tow_errors(self.windows, self.scheme))
+            known = (self.windows, self.options, tow_errors(self.windows, self.options))
             object.__setattr__(self, 'known', known)
         return known[2]
 
     @property
-    def scheme(self) -> Scheme:
-        """Error scheme of the options."""
-        return Scheme.of(self.options)
-
-    @property
     def net(self) -> FloatArray | None:
         """Most likely factors (2,) on drag and weight of the net; None where it is held."""
-        std = self.scheme.net_std
+        std = self.options.net_std
         if not std.any():
             return None
         factors = np.zeros(2)
         if self.windows:
-            errors = self.scheme.model_errors
+            errors = model_errors(self.options)
             factors = errors.clipped(self.elimination.model)[errors.slice_of('net')]
         return np.maximum(1.0 + std * factors, LEAST_FACTOR)
 

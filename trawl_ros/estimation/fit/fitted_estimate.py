@@ -7,15 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS, TERMS
+from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS, TERMS, model_errors
 from trawl_ros.estimation.fit.estimate import (
     Estimate,
     Innovation,
     NetFactor,
     TowBias,
-    active_bounds,
-    interval,
-    is_determined,
     undetermined,
 )
 from trawl_ros.estimation.fit.fit import Fit
@@ -59,30 +56,20 @@ def posterior_estimate(
     A model that the data contradict knows less than it says: standard deviations are as many times
     larger as the misfit is (Birge 1932).
     """
-    prior, options = fit.prior, fit.options
-    values = np.array(fit.coefficients)
-    std = fit.birge_ratio * fit.std
-    degrees_of_freedom = fit.degrees_of_freedom + options.stated_noise_readings
-    low, high = interval(values, std, degrees_of_freedom, options.confidence, prior)
     return Estimate(
-        names=prior.names,
+        prior=fit.prior,
         revision=revision,
         stamp=max(linear.window.end_ns for linear in fit.windows),
         windows=len(fit.windows),
-        values=values,
-        std=std,
+        values=np.array(fit.coefficients),
         covariance=fit.birge_ratio**2 * fit.posterior.covariance,
-        low=low,
-        high=high,
-        shrink=1.0 - std / prior.std,
-        determined=is_determined(values, std, prior),
-        active_bounds=active_bounds(values, prior),
         condition_number=fit.posterior.condition_number,
-        undetermined=undetermined(fit.posterior, prior.names),
+        undetermined=undetermined(fit.posterior, fit.prior.names),
         noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
         tow_biases=tow_biases(fit),
         net=net_factors(fit),
-        degrees_of_freedom=degrees_of_freedom,
+        degrees_of_freedom=fit.degrees_of_freedom + fit.options.stated_noise_readings,
+        confidence=fit.options.confidence,
         birge_ratio=fit.birge_ratio,
         cost=fit.cost,
         objective=fit.objective,
@@ -94,7 +81,7 @@ def posterior_estimate(
 
 def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
     """Return the calibration errors by tow and channel, inputs included."""
-    share = fit.scheme.tow_share
+    share = fit.options.tow_share
     biases = []
     roots = tow_roots(fit.elimination, fit.posterior.root)
     for tow, every in zip(fit.elimination.tows, roots, strict=True):
@@ -104,14 +91,8 @@ def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
             means = [window.means[name] for window in windows if name in window.means]
             if not means:
                 continue
-            size = np.array(
-                [
-                    share * term.std * (float(np.mean(means)) if term.relative else 1.0)
-                    if term.channel == name
-                    else 0.0
-                    for term in TERMS
-                ]
-            )
+            mean = float(np.mean(means))
+            size = np.array([share * (term.channel == name) * term.size(mean) for term in TERMS])
             biases.append(
                 TowBias(
                     tow=windows[0].tow,
@@ -129,9 +110,9 @@ def net_factors(fit: Fit) -> tuple[NetFactor, ...]:
     """Return the factors on drag and weight of the net, if they are estimated along."""
     if fit.net is None:
         return ()
-    std = fit.scheme.net_std
+    std = fit.options.net_std
     root = shared_root(fit.elimination, fit.posterior.root)[len(fit.coefficients) :]
-    (rows,) = fit.scheme.model_errors.blocks('net')
+    (rows,) = model_errors(fit.options).blocks('net')
     return tuple(
         NetFactor(what, float(value), float(known * np.linalg.norm(root[row])), float(known))
         for what, value, known, row in zip(('drag', 'weight'), fit.net, std, rows, strict=True)

@@ -11,6 +11,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.core.errors import NoSteadyState
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, paper_values, stack
 from trawl_ros.estimation.fit.prediction import NetPredictor, SteadyPredictor, WindowPredictor
 from trawl_ros.estimation.windows.records import SteadyWindow
 from trawl_ros.records.channels import INPUTS, MEASURED
@@ -169,6 +170,37 @@ def linearise(
             state=prediction.state,
         )
     raise failure or NoSteadyState('no start was given to look for a steady state from')
+
+
+def nearest_state(
+    window: SteadyWindow, among: Sequence[Linearised | None]
+) -> tuple['Equilibrium', ...]:
+    """Steady state of the window whose inputs are nearest to those of another; none without any."""
+    known = [linear for linear in among if linear is not None]
+    if not known:
+        return ()
+    here = measured_inputs(window)
+    away = [np.abs(here / measured_inputs(other.window) - 1.0).sum() for other in known]
+    return (known[int(np.argmin(away))].state,)
+
+
+def paper_rows(
+    linearised: Sequence[Linearised | None], inputs: FloatArray | None = None
+) -> FloatArray:
+    """Predictions (n, 4) of the channels of eq. 35, NaN where there is no steady state.
+
+    They are those at measured inputs, or to first order at ``inputs`` (n, 3).
+    """
+    rows = []
+    for number, linear in enumerate(linearised):
+        if linear is None:
+            rows.append(np.full(len(PAPER_CHANNELS), np.nan))
+            continue
+        values = linear.solved
+        if inputs is not None:
+            values = values + linear.by_inputs @ (inputs[number] - measured_inputs(linear.window))
+        rows.append(paper_values(dict(zip(linear.channels, values, strict=True))))
+    return stack(rows)
 
 
 def measured_inputs(window: SteadyWindow) -> FloatArray:

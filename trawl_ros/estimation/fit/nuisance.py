@@ -26,7 +26,7 @@ import numpy as np
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.error_stack import ErrorStack, stacked
 from trawl_ros.estimation.fit.error_terms import TowErrors
-from trawl_ros.estimation.least_squares.information import Information, Joined, joined, own_values
+from trawl_ros.estimation.least_squares.information import Information, Joined, joined
 
 MAX_ELIMINATIONS = 50
 """Safeguard on the number of eliminations; the last one uses the final weights."""
@@ -137,7 +137,8 @@ def eliminate_nuisance(
         return NuisanceElimination((), empty, np.zeros(0))
     stack = stacked(tows, scales, residual, jacobian)
     if weights is None:
-        padded = _robust_weights(stack, tows, huber)
+        q, m = jacobian.shape[2], tows[0].model.shape[2]
+        padded = _robust_weights(stack, stack.columns[..., q:], m, huber)
     else:
         # Tows have different numbers of windows; the padding keeps weight 1.
         padded = np.ones(stack.std.shape)
@@ -146,16 +147,14 @@ def eliminate_nuisance(
     return _eliminate_with_weights(stack, tows, padded, huber)
 
 
-def _robust_weights(stack: ErrorStack, tows: Sequence[TowErrors], huber: float) -> FloatArray:
+def _robust_weights(stack: ErrorStack, columns: FloatArray, m: int, huber: float) -> FloatArray:
     """Find Huber weights (t, n, k) that are consistent with the own errors they lead to.
 
     This is the fixed point of iteratively reweighted least squares at Δ = 0.
     """
-    m, p = tows[0].model.shape[2], tows[0].calibration.shape[2]
-    columns = stack.columns[..., -(m + p + 1) :]
     weights, previous_step = np.ones(stack.std.shape), None
     for _ in range(1, MAX_ELIMINATIONS):
-        updated = _huber_weights(_own_errors(stack, columns, m, weights), huber)
+        updated = _huber_weights(_most_likely(stack, columns, m, weights).own, huber)
         step = updated - weights
         if float(np.max(np.abs(step))) < WEIGHT_TOLERANCE:
             break
@@ -163,8 +162,24 @@ def _robust_weights(stack: ErrorStack, tows: Sequence[TowErrors], huber: float) 
     return weights
 
 
-def _own_errors(stack: ErrorStack, columns: FloatArray, m: int, weights: FloatArray) -> FloatArray:
-    """Return the readings' own errors (t, n, k), in std, at Δ = 0 and the most likely ν and μ.
+@dataclass(frozen=True)
+class _MostLikely:
+    """Most likely errors at Δ = 0.
+
+    Those of the model μ (m,), of calibration ν (t, p), ε ``own`` (t, n, k) in std, and V⁻¹ times
+    the residual less what μ and ν explain, ``solved`` (t, n, k).
+    """
+
+    model: FloatArray
+    calibration: FloatArray
+    own: FloatArray
+    solved: FloatArray
+
+
+def _most_likely(
+    stack: ErrorStack, columns: FloatArray, m: int, weights: FloatArray
+) -> _MostLikely:
+    """Find the most likely errors with fixed weights (t, n, k).
 
     ``columns`` (t, n, k, m + p + 1) are [M U r].
     """
@@ -182,13 +197,15 @@ def _own_errors(stack: ErrorStack, columns: FloatArray, m: int, weights: FloatAr
     matrix = np.sum(normal[:, :m, :m] - normal[:, :m, m:-1] @ eliminated[..., :m], axis=0)
     right = np.sum(normal[:, :m, -1] - (normal[:, :m, m:-1] @ eliminated[..., m:])[..., 0], axis=0)
     model = np.linalg.solve(matrix + np.eye(m), right)
+    calibration = eliminated[..., m] - eliminated[..., :m] @ model
     # [M U r] @ (-μ, -ν, 1) is r - M μ - U ν.
     combination = np.ones((t, 1, width, 1))
     combination[:, 0, :m, 0] = -model
-    combination[:, 0, m:-1, 0] = eliminated[..., :m] @ model - eliminated[..., m]
-    # (D/w) V⁻¹ (r - M μ - U ν), divided by the std.
-    own: FloatArray = stack.std / weights * (solved @ combination)[..., 0] * stack.present
-    return own
+    combination[:, 0, m:-1, 0] = -calibration
+    left = (solved @ combination)[..., 0]
+    # ε = (D/w) V⁻¹ (r - M μ - U ν), divided by the std.
+    own: FloatArray = stack.std / weights * left * stack.present
+    return _MostLikely(model, calibration, own, left)
 
 
 def _extrapolated(
@@ -236,8 +253,7 @@ def _eliminate_with_weights(
     # Whiten each window with the Cholesky factor of V = D/w + G Gᵀ. This eliminates δ.
     diagonal = (stack.std**2 / weights)[..., None] * np.eye(k)
     roots = np.asarray(np.linalg.cholesky(diagonal + stack.shared), np.float64)
-    inverse = np.asarray(np.linalg.inv(roots), np.float64)
-    rows = (inverse @ stack.columns).reshape(t, n * k, width)
+    rows = np.linalg.solve(roots, stack.columns).reshape(t, n * k, width)
     squares = rows.swapaxes(1, 2) @ rows
     determinants = 2.0 * np.log(np.diagonal(roots, axis1=2, axis2=3)).sum((1, 2))
     blocks = [
@@ -246,65 +262,20 @@ def _eliminate_with_weights(
     ]
     # Prior precisions: 0 for Δ, whose prior is added later, and 1 for μ and ν.
     precision = np.concatenate((np.zeros(q), np.ones(m + p)))
-    found = joined(blocks, [precision] * t, q + m)
-    # Most likely μ and ν at Δ = 0.
-    both = Information(found.matrix, found.right, 0.0, 0.0)
-    model = own_values(both, found.precision, np.zeros(q))
-    shared = np.concatenate((np.zeros(q), model))
-    calibration = np.array([own_values(block, precision, shared) for block in blocks])
-    errors = _most_likely_errors(stack, inverse, weights, model, calibration, huber)
-    return NuisanceElimination(
-        tuple(
-            TowPart(
-                tow,
-                block,
-                stack.std[number, : len(tow.rows)],
-                weights[number, : len(tow.rows)],
-                roots[number, : len(tow.rows)],
-                errors.own[number, : len(tow.rows)],
-                calibration[number],
-                errors.inputs[number, : len(tow.rows)],
-                float(errors.costs[number]),
-            )
-            for number, (tow, block) in enumerate(zip(tows, blocks, strict=True))
-        ),
-        found,
-        model,
-    )
-
-
-@dataclass(frozen=True)
-class _MostLikelyErrors:
-    """Most likely ε ``own`` (t, n, k) and δ ``inputs`` (t, n, 4), in std, and ``costs`` (t,)."""
-
-    own: FloatArray
-    inputs: FloatArray
-    costs: FloatArray
-
-
-def _most_likely_errors(
-    stack: ErrorStack,
-    inverse: FloatArray,
-    weights: FloatArray,
-    model: FloatArray,
-    calibration: FloatArray,
-    huber: float,
-) -> _MostLikelyErrors:
-    """Find the most likely δ and ε at Δ = 0, and the robust cost of each tow.
-
-    ``inverse`` (t, n, k, k) is L⁻¹ of V = L Lᵀ, ``model`` (m,) is μ and ``calibration`` (t, p) ν.
-    """
-    m, p = len(model), calibration.shape[1]
-    by_model = stack.columns[..., -(m + p + 1) : -(p + 1)]
-    by_calibration = stack.columns[..., -(p + 1) : -1]
-    # Split r - M μ - U ν = G δ + ε: δ = Gᵀ V⁻¹ (…) and ε = (D/w) V⁻¹ (…).
-    remaining = (
-        stack.residual - by_model @ model - (by_calibration @ calibration[:, None, :, None])[..., 0]
-    )
-    solved = inverse.swapaxes(2, 3) @ (inverse @ remaining[..., None])
-    inputs = (stack.inputs.swapaxes(2, 3) @ solved)[..., 0]
-    own = stack.std / weights * solved[..., 0] * stack.present
-    size = np.abs(own)
+    found = _most_likely(stack, stack.columns[..., q:], m, weights)
+    # δ = Gᵀ V⁻¹ (r - M μ - U ν).
+    inputs = (stack.inputs.swapaxes(2, 3) @ found.solved[..., None])[..., 0]
+    size = np.abs(found.own)
     loss = np.where(size <= huber, 0.5 * size**2, huber * (size - 0.5 * huber))
-    squares = np.sum(inputs**2, (1, 2)) + np.sum(calibration**2, 1)
-    return _MostLikelyErrors(own, inputs, loss.sum((1, 2)) + 0.5 * squares)
+    squares_of_rest = np.sum(inputs**2, (1, 2)) + np.sum(found.calibration**2, 1)
+    costs = loss.sum((1, 2)) + 0.5 * squares_of_rest
+    parts = []
+    for number, (tow, block) in enumerate(zip(tows, blocks, strict=True)):
+        own = number, slice(len(tow.rows))
+        parts.append(
+            TowPart(
+                tow, block, stack.std[own], weights[own], roots[own], found.own[own],
+                found.calibration[number], inputs[own], float(costs[number]),
+            )
+        )  # fmt: skip
+    return NuisanceElimination(tuple(parts), joined(blocks, [precision] * t, q + m), found.model)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Starts of a fit for boards that have no steady state at the start of the prior."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import islice
 
 import numpy as np
@@ -42,7 +42,7 @@ def standing_starts(
 
 
 def _mean(
-    means: dict[str, float], port: str, starboard: str, mirrored: float, otherwise: float
+    means: Mapping[str, float], port: str, starboard: str, mirrored: float, otherwise: float
 ) -> float:
     """Mean angle (rad) of both boards as that of the port one; ``otherwise`` without sensors."""
     seen = [means[port]] if port in means else []

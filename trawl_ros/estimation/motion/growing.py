@@ -113,13 +113,11 @@ class GrowingLinearisation:
         found = []
         for tow, layout in zip(tows, layouts, strict=True):
             z, inputs = np.zeros(len(layout)), self._of(tow)
-            z[: layout.shared], z[layout.of_errors] = self._shared, inputs.errors
+            z[: layout.shared], z[layout.slices['errors']] = self._shared, inputs.errors
             drifts = inputs.along(tow)
             if drifts.any():
                 # Roots change with the log's scatter as a tow grows, and drifts stay.
-                z[layout.of_knots] = np.concatenate(
-                    [np.linalg.solve(knots.root, drifts[own])
-                     for knots, own, _ in tow.inputs.knot_places]
-                )  # fmt: skip
+                for knots, own, _ in tow.inputs.knot_places:
+                    z[layout.slices[knots.channel]] = np.linalg.solve(knots.root, drifts[own])
             found.append(z)
         return found

@@ -22,9 +22,6 @@ from trawl_ros.estimation.motion.towing.inputs import corrected
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.windows.records import SteadyWindow
 
-FOLDS = 5
-"""Parts into which the states of a single tow are dealt, as by the hold-out of the windows."""
-
 Predict = Callable[[FloatArray, Sequence[SteadyWindow], FloatArray | None, FloatArray], FloatArray]
 """Channels of eq. 35 (n, 4) in windows, by coefficients (q,), factors (2,) on drag and weight
 of the net, None where these are held, and warp lengths (m) and speed (m/s) (n, 3)."""
@@ -37,7 +34,6 @@ def hold_out_states(
     tow_of: Sequence[tuple[int, ...]],
     predict: Predict,
     options: MotionOptions,
-    seed: int = 0,
 ) -> FloatArray:
     """Predict each window by a fit without its tow, or its state where there is one tow.
 
@@ -57,17 +53,9 @@ def hold_out_states(
         Predicts windows.
     options
         With which the tows were fitted.
-    seed
-        Of the order in which states are dealt.
     """
     predicted = np.full((len(windows), len(PAPER_CHANNELS)), np.nan)
-    tows = sorted({window.tow for window in windows})
-    if len(tows) > 1:
-        folds = [{window.state for window in windows if window.tow == tow} for tow in tows]
-    else:
-        states = np.random.default_rng(seed).permutation(sorted({w.state for w in windows}))
-        parts = np.array_split(states, min(FOLDS, len(states)))
-        folds = [set(part.tolist()) for part in parts]
+    folds, tows = folds_of(windows), {window.tow for window in windows}
     if len(folds) < 2:
         return predicted
     for fold in folds:
@@ -90,6 +78,20 @@ def hold_out_states(
     return predicted
 
 
+def folds_of(windows: Sequence[SteadyWindow], folds: int = 5, seed: int = 0) -> list[set[int]]:
+    """States of windows that are left out together: those of a tow.
+
+    Of a single tow they are dealt to folds in a random order, so that a fold is not one warp length
+    at all speeds. With fewer states than folds each is left out alone.
+    """
+    tows = sorted({window.tow for window in windows})
+    if len(tows) > 1:
+        return [{window.state for window in windows if window.tow == tow} for tow in tows]
+    states = np.random.default_rng(seed).permutation(sorted({w.state for w in windows}))
+    parts = np.array_split(states, min(folds, max(len(states), 1)))
+    return [set(part.tolist()) for part in parts]
+
+
 def _inputs(
     fit: MotionFit, place: Place, window: SteadyWindow, tow_of: Sequence[tuple[int, ...]]
 ) -> FloatArray:
@@ -108,7 +110,7 @@ def _inputs(
     if not parts:
         return shown
     nearest = min(parts, key=away)
-    return corrected(shown, place[nearest][fit.layouts[nearest].of_errors])
+    return corrected(shown, place[nearest][fit.layouts[nearest].slices['errors']])
 
 
 def _stretches(

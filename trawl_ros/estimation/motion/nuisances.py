@@ -8,19 +8,20 @@ slowest motions with which a part of it may begin, errors of its inputs, those t
 at knots along the way, and calibration errors of its sensors.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate, pairwise
 
 import numpy as np
 
 from trawl_ros.core.arrays import BoolArray, FloatArray, Slice
-from trawl_ros.estimation.fit.error_terms import GROUPS, MODEL_ANGLE, MODEL_FRACTION, group_of
+from trawl_ros.estimation.fit.error_terms import GROUPS, channel_errors, group_of, model_std
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, channel_errors
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
-from trawl_ros.records.channels import CHANNELS
 from trawl_ros.solver.motion.parameters import NET
 
 START_STD_M = 10.0
@@ -59,73 +60,53 @@ class TowLayout:
     model: float = 1.0
     net_std: float = 0.0
 
-    @property
-    def of_coefficients(self) -> Slice:
-        """Slice of the boards' coefficients."""
-        return slice(0, self.coefficients)
+    @cached_property
+    def slices(self) -> Mapping[str, Slice]:
+        """Slice of each kind of parameters.
 
-    @property
-    def of_added_mass(self) -> Slice:
-        """Slice of the boards' added mass."""
-        return slice(self.coefficients, self.coefficients + 1)
-
-    @property
-    def of_net(self) -> Slice:
-        """Slice of the factors on drag and weight of the net."""
-        first = self.of_added_mass.stop
-        return slice(first, first + (len(NET) if self.net_std else 0))
+        They are ``coefficients``, ``added_mass``, ``net`` (factors on its drag and weight),
+        ``model`` (constant errors), ``starts`` (slowest motions with which parts begin), ``errors``
+        (of the inputs), each input's at its knots by its name, and ``calibration``.
+        """
+        widths = {
+            'coefficients': self.coefficients,
+            'added_mass': 1,
+            'net': len(NET) if self.net_std else 0,
+            'model': len(GROUPS),
+            'starts': self.starts,
+            'errors': len(INPUT_ERRORS),
+            **dict(self.knots),
+            'calibration': len(channel_errors(self.channels)),
+        }
+        ends = pairwise(accumulate(widths.values(), initial=0))
+        return {name: slice(*edges) for name, edges in zip(widths, ends, strict=True)}
 
     @property
     def of_gear(self) -> int:
         """Number of the parameters of the gear itself, the first of all."""
-        return self.of_net.stop
+        return self.slices['net'].stop
 
     @property
     def shared(self) -> int:
         """Number of the parameters that all tows share."""
-        return self.of_gear + len(GROUPS)
-
-    @property
-    def of_model(self) -> Slice:
-        """Slice of the constant errors of the model."""
-        return slice(self.of_gear, self.shared)
-
-    @property
-    def of_starts(self) -> Slice:
-        """Slice of the slowest motions with which parts begin."""
-        return slice(self.shared, self.shared + self.starts)
-
-    @property
-    def of_errors(self) -> Slice:
-        """Slice of the errors of the inputs."""
-        return slice(self.of_starts.stop, self.of_starts.stop + len(INPUT_ERRORS))
+        return self.slices['model'].stop
 
     @property
     def of_knots(self) -> Slice:
         """Slice of the errors of inputs at all knots."""
-        return slice(self.of_errors.stop, self.of_errors.stop + sum(n for _, n in self.knots))
+        return slice(self.slices['errors'].stop, self.slices['calibration'].start)
 
     @property
     def of_log(self) -> Slice:
-        """Slice of the log's errors at its knots."""
-        first = self.of_knots.start
-        for channel, number in self.knots:
-            if channel == 'speed':
-                return slice(first, first + number)
-            first += number
-        return slice(first, first)
-
-    @property
-    def of_calibration(self) -> Slice:
-        """Slice of the calibration errors."""
-        return slice(self.of_knots.stop, len(self))
+        """Slice of the log's errors at its knots; empty without any."""
+        return self.slices.get('speed', slice(0, 0))
 
     def net(self, z: FloatArray) -> FloatArray:
         """Factors (2,) on drag and weight of the net by parameters (p,) in prior std; 1 if held."""
-        return 1.0 + self.net_std * z[self.of_net] if self.net_std else np.ones(len(NET))
+        return 1.0 + self.net_std * z[self.slices['net']] if self.net_std else np.ones(len(NET))
 
     def __len__(self) -> int:
-        return self.of_knots.stop + len(channel_errors(self.channels))
+        return self.slices['calibration'].stop
 
 
 def layout_of(tow: MovingTow, gear: TowedGear, model: float) -> TowLayout:
@@ -138,26 +119,22 @@ def layout_of(tow: MovingTow, gear: TowedGear, model: float) -> TowLayout:
 def columns(linear: LinearisedTow, layout: TowLayout, prior_std: FloatArray) -> FloatArray:
     """Derivatives (n, k, p) of measured means by all parameters, in units of their prior std."""
     n, k = linear.values.shape
+    own, by = layout.slices, linear.by
     total = np.zeros((n, k, len(layout)))
-    total[..., layout.of_coefficients] = linear.by_coefficients * prior_std
-    total[..., layout.of_added_mass] = linear.by_added_mass * ADDED_MASS_STD
-    total[..., layout.of_net] = linear.by_net * layout.net_std
-    for column, group in enumerate(GROUPS, start=layout.of_model.start):
-        for row, name in enumerate(layout.channels):
-            if group_of(name) == group:
-                angle = CHANNELS[name].unit == 'rad'
-                values = np.abs(np.nan_to_num(linear.values[:, row]))
-                total[:, row, column] = layout.model * (
-                    MODEL_ANGLE if angle else MODEL_FRACTION * values
-                )
-    total[..., layout.of_starts] = linear.by_starts * START_STD_M
-    total[..., layout.of_errors] = linear.by_errors
-    for knots, own, _ in linear.tow.inputs.knot_places:
-        total[..., layout.of_knots][..., own] = linear.by_knots[..., own] @ knots.root
-    for number, error in enumerate(channel_errors(layout.channels)):
+    total[..., own['coefficients']] = by['coefficients'] * prior_std
+    total[..., own['added_mass']] = by['added_mass'] * ADDED_MASS_STD
+    total[..., own['net']] = by['net'] * layout.net_std
+    total[..., own['starts']] = by['starts'] * START_STD_M
+    total[..., own['errors']] = by['errors']
+    for knots in linear.tow.inputs.knots:
+        total[..., own[knots.channel]] = by[knots.channel] @ knots.root
+    values = np.nan_to_num(linear.values)
+    for row, name in enumerate(layout.channels):
+        column = own['model'].start + GROUPS.index(group_of(name))
+        total[:, row, column] = layout.model * model_std(name, values[:, row])
+    for column, error in enumerate(channel_errors(layout.channels), own['calibration'].start):
         row = layout.channels.index(error.channel)
-        values = np.nan_to_num(linear.values[:, row]) if error.relative else np.ones(n)
-        total[:, row, layout.of_calibration.start + number] = error.std * values
+        total[:, row, column] = error.std * (values[:, row] if error.relative else 1.0)
     return total
 
 
@@ -165,12 +142,12 @@ def point_of(
     tow: MovingTow, layout: TowLayout, z: FloatArray, start: FloatArray, prior_std: FloatArray
 ) -> TowedPoint:
     """Point at which to tow, from parameters (p,) in units of their prior std."""
-    scaled = z[layout.of_knots]
-    drifts = [knots.root @ scaled[own] for knots, own, _ in tow.inputs.knot_places]
+    own = layout.slices
+    drifts = [knots.root @ z[own[knots.channel]] for knots in tow.inputs.knots]
     return TowedPoint(
-        coefficients=start + prior_std * z[layout.of_coefficients],
-        added_mass=float(ADDED_MASS_STD * z[layout.of_added_mass][0]),
-        errors=z[layout.of_errors],
+        coefficients=start + prior_std * z[own['coefficients']],
+        added_mass=float(ADDED_MASS_STD * z[own['added_mass']][0]),
+        errors=z[own['errors']],
         drifts=np.concatenate((np.zeros(0), *drifts)),
         net=layout.net(z),
     )
@@ -192,6 +169,6 @@ def linear_part(layout: TowLayout) -> BoolArray:
     They are slow motions, calibration and the constant errors of the model.
     """
     flags = np.zeros(len(layout), np.bool_)
-    for part in (layout.of_model, layout.of_starts, layout.of_calibration):
-        flags[part] = True
+    for part in ('model', 'starts', 'calibration'):
+        flags[layout.slices[part]] = True
     return flags

@@ -4,18 +4,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import solve_triangular
-from scipy.special import ndtri
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.fit_records import MotionFit
 from trawl_ros.estimation.motion.towing.records import LeftOut
-
-HALF_95 = float(ndtri(0.975))
 
 POOR_MISFIT = 2.0
 """Root mean square of a stretch's whitened residuals from which it fits badly."""
@@ -56,31 +54,21 @@ class MotionOutcome:
     refused: tuple[str, ...]
     held_out: FloatArray
 
-    @property
-    def std(self) -> FloatArray:
-        """Posterior std (q,) of the whole tow."""
-        return np.sqrt(np.diag(self.fit.covariance))
-
-    @property
-    def covariance(self) -> FloatArray:
-        """Posterior covariance (q, q) of the whole tow."""
-        return self.fit.covariance
-
-    @property
-    def low(self) -> FloatArray:
-        """Lower ends (q,) of the 95 % intervals, cut at the bounds."""
-        return np.maximum(self.fit.values - HALF_95 * self.std, self.prior.low)
-
-    @property
-    def high(self) -> FloatArray:
-        """Upper ends (q,)."""
-        return np.minimum(self.fit.values + HALF_95 * self.std, self.prior.high)
+    @cached_property
+    def estimate(self) -> Estimate:
+        """Estimate by the whole tow."""
+        fit = self.fit
+        ends = [linear.tow.start_ns + int(1e9 * linear.tow.middles[-1]) for linear in fit.linear]
+        return Estimate(
+            self.prior, 1, max(ends), 0, fit.values, fit.covariance,
+            fit.cost, fit.converged, fit.reason, net=fit.net,
+        )  # fmt: skip
 
     @property
     def ratio(self) -> FloatArray:
         """Ratio (q,) of the std of the whole tow to that of its windows or of the prior."""
         before = self.prior.std if self.windows is None else self.windows.std
-        return np.asarray(self.std / before, np.float64)
+        return np.asarray(self.estimate.std / before, np.float64)
 
     @property
     def geometric_means(self) -> dict[str, float]:
@@ -90,7 +78,7 @@ class MotionOutcome:
         """
         return {
             'windows': 1.0 if self.windows is None else _mean(self.windows.std / self.prior.std),
-            'whole': _mean(self.std / self.prior.std),
+            'whole': _mean(self.estimate.std / self.prior.std),
             'ratio': _mean(self.ratio),
         }
 

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.motion.series import Series, TowReadings
+from trawl_ros.estimation.motion.series import Series, TowReadings, about_line
 from trawl_ros.estimation.motion.towing.records import MovingTow, Oscillation, PartStatistics
 
 CHANNELS_OF_STATISTICS = (
@@ -88,10 +88,7 @@ def _about_lines(times: FloatArray, values: FloatArray, stretch_s: float) -> Flo
     number = ((times - times[0]) / stretch_s).astype(int)
     for stretch in np.unique(number):
         own = number == stretch
-        away = times[own] - times[own].mean()
-        square = float(away @ away)
-        slope = float(away @ values[own]) / square if square > 0.0 else 0.0
-        left[own] = values[own] - values[own].mean() - slope * away
+        left[own] = about_line(times[own], values[own])
     return left
 
 

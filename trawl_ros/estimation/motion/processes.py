@@ -13,17 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.estimation.fit.error_terms import (
-    GROUPS,
-    MODEL_ANGLE,
-    MODEL_FRACTION,
-    Scheme,
-    group_of,
-)
+from trawl_ros.estimation.fit.error_terms import GROUPS, group_of, model_std
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.records.channels import CHANNELS
 
-STATE_SHARE = Scheme.state_share
+STATE_SHARE = EstimatorOptions.state_share
 """Part of a channel's bias that changes from one state of a tow to the next where the channel table
 has nothing measured; as for steady windows."""
 
@@ -47,6 +42,10 @@ class ErrorTimes:
     state: float = 900.0
 
 
+KINDS = 'noise', 'drift', 'model', 'state'
+"""Kinds of errors whose sizes are estimated for each group."""
+
+
 @dataclass(frozen=True)
 class ErrorSizes:
     """Sizes of the errors of each of `GROUPS`, as factors on what is stated.
@@ -58,7 +57,7 @@ class ErrorSizes:
     drift
         On the noise of a single reading in the channel table: std of the sensor's process.
     model
-        On `MODEL_FRACTION` of the value, or `MODEL_ANGLE`: std of the model's process.
+        On `model_std`: std of the model's process.
     state
         On `Channel.state_std`, as for steady windows: std of the process that changes with states.
     log
@@ -78,65 +77,45 @@ class ErrorSizes:
         self, group: int, noise: float, drift: float, model: float, state: float
     ) -> 'ErrorSizes':
         """Sizes with those of one group replaced."""
-
-        def put(values: tuple[float, ...], value: float) -> tuple[float, ...]:
-            return (*values[:group], value, *values[group + 1 :])
-
-        return replace(
-            self,
-            noise=put(self.noise, noise),
-            drift=put(self.drift, drift),
-            model=put(self.model, model),
-            state=put(self.state, state),
-        )
+        table = self._table
+        table[:, group] = noise, drift, model, state
+        return self._with(table)
 
     def tempered(self, factor: float) -> 'ErrorSizes':
         """Sizes with all errors of stretches larger by a factor."""
-
-        def more(values: tuple[float, ...]) -> tuple[float, ...]:
-            return tuple(factor * value for value in values)
-
-        return replace(
-            self, noise=more(self.noise), drift=more(self.drift), model=more(self.model),
-            state=more(self.state), swift=factor * self.swift,
-        )  # fmt: skip
+        return replace(self._with(factor * self._table), swift=factor * self.swift)
 
     def away_from(self, other: 'ErrorSizes') -> float:
         """Largest logarithm of a size over that of another record; 0 where both are 0."""
-        pairs = zip(self._all, other._all, strict=True)
-        return float(max(abs(np.log(one / two)) for one, two in pairs if one > 0.0 and two > 0.0))
+        one, two = (np.append(sizes._table, sizes.log) for sizes in (self, other))
+        both = (one > 0.0) & (two > 0.0)
+        return float(np.max(np.abs(np.log(one[both] / two[both]))))
 
     def no_less_than(self, other: 'ErrorSizes') -> 'ErrorSizes':
         """Sizes with each that is below another record's replaced by that."""
-
-        def more(values: tuple[float, ...], least: tuple[float, ...]) -> tuple[float, ...]:
-            return tuple(map(max, values, least))
-
-        return ErrorSizes(
-            more(self.noise, other.noise), more(self.drift, other.drift),
-            more(self.model, other.model), more(self.state, other.state),
-            max(self.log, other.log), max(self.swift, other.swift),
-        )  # fmt: skip
+        more = self._with(np.maximum(self._table, other._table))
+        return replace(more, log=max(self.log, other.log), swift=max(self.swift, other.swift))
 
     def record(self) -> dict[str, object]:
         """Record for JSON: the sizes that are estimated, by kind of error and group."""
-        kinds = {
-            'noise': self.noise, 'drift': self.drift, 'model': self.model, 'state': self.state,
-        }  # fmt: skip
-        by_group = {kind: dict(zip(GROUPS, own, strict=True)) for kind, own in kinds.items()}
-        return {**by_group, 'log': self.log}
-
-    @property
-    def _all(self) -> tuple[float, ...]:
-        return (*self.noise, *self.drift, *self.model, *self.state, self.log)
+        rows = zip(KINDS, self._table.tolist(), strict=True)
+        return {kind: dict(zip(GROUPS, row, strict=True)) for kind, row in rows} | {'log': self.log}
 
     def of_group(self, group: int) -> FloatArray:
         """Factors (5,) on the errors of a group.
 
         They are those on noise, drift, model's error, what changes with states, and what is swift.
         """
-        each = self.noise[group], self.drift[group], self.model[group], self.state[group]
-        return np.array([*each, self.swift])
+        return np.append(self._table[:, group], self.swift)
+
+    @property
+    def _table(self) -> FloatArray:
+        """Sizes (4, groups) by kind of error."""
+        return np.array([self.noise, self.drift, self.model, self.state])
+
+    def _with(self, table: FloatArray) -> 'ErrorSizes':
+        noise, drift, model, state = map(tuple, table.tolist())
+        return replace(self, noise=noise, drift=drift, model=model, state=state)
 
 
 NO_ERROR = (0.0,) * len(GROUPS)
@@ -208,26 +187,25 @@ def group_rows(tow: MovingTow, predicted: FloatArray, noise: FloatArray) -> list
         own = np.array([name == group for name in groups], dtype=bool)
         stretches, channels = np.nonzero(there & own)
         values = np.abs(predicted[stretches, channels])
-        rows = [CHANNELS[tow.channels[c]] for c in channels]
-        angle = any(CHANNELS[tow.channels[c]].unit == 'rad' for c in np.flatnonzero(own))
+        names = [tow.channels[c] for c in channels]
         found.append(
             GroupRows(
                 stretches,
                 channels,
                 tow.middles[stretches],
                 noise[stretches, channels],
-                np.array([row.noise for row in rows]),
-                np.full(len(values), MODEL_ANGLE) if angle else MODEL_FRACTION * values,
-                np.array(
-                    [
-                        channel.state_std(channel.bias_std(value), STATE_SHARE)
-                        for channel, value in zip(rows, values, strict=True)
-                    ]
-                ),
+                np.array([CHANNELS[name].noise for name in names]),
+                model_std(names[0], values) if names else values,
+                np.array([_state_std(*one) for one in zip(names, values, strict=True)]),
                 change[stretches, channels],
             )
         )
     return found
+
+
+def _state_std(channel: str, value: float) -> float:
+    row = CHANNELS[channel]
+    return row.state_std(row.bias_std(value), STATE_SHARE)
 
 
 def changes(means: FloatArray) -> FloatArray:

@@ -174,7 +174,7 @@ class MotionSearch:
         every = problem.joined.covariance
         own, layout, known = slice(0, len(prior)), self.layouts[0], self.gear.net_std
         covariance = every[own, own]
-        net_std = known * np.sqrt(np.diag(every)[layout.of_net])
+        net_std = known * np.sqrt(np.diag(every)[layout.slices['net']])
         return MotionFit(
             values=prior.start + prior.std * place[0][own],
             matrix=problem.joined.matrix,
@@ -247,21 +247,34 @@ class MotionSearch:
         self.here, self.guides = list(place), dict(self.last_guides)
         return ''
 
-    def is_lower(self, tried: Sequence[LinearisedTow], there: Place, sizes: ErrorSizes) -> bool:
-        """True if the cost is lower there; stretches that one place lacks belong to neither."""
-        before = self.cost(without(self.linear, tried), self.here, sizes)
-        return self.cost(without(tried, self.linear), there, sizes) <= before * ROUNDED
+    def is_lower(
+        self,
+        tried: Sequence[LinearisedTow],
+        there: Place,
+        sizes: ErrorSizes,
+        free: Sequence[BoolArray] | None = None,
+    ) -> bool:
+        """True if the `cost` is lower there; stretches that one place lacks belong to neither."""
+        before = self.cost(without(self.linear, tried), self.here, sizes, free)
+        return self.cost(without(tried, self.linear), there, sizes, free) <= before * ROUNDED
 
-    def cost(self, linear: Sequence[LinearisedTow], place: Place, sizes: ErrorSizes) -> float:
+    def cost(
+        self,
+        linear: Sequence[LinearisedTow],
+        place: Place,
+        sizes: ErrorSizes,
+        free: Sequence[BoolArray] | None = None,
+    ) -> float:
         """Cost of the place where tows are linearised.
 
         Parameters that do not change the linearisation are at their best there (variable
         projection, Golub and Pereyra 1973): shapes of the slowest motions differ from place to
-        place, and so does what their amplitudes mean.
+        place, and so does what their amplitudes mean. ``free`` are flags (p,) of others that are.
         """
         data, largest = self.data(linear, place), self.options.largest_step
         problem = linear_problem(data, place, self.prior, sizes, largest)
-        return problem.cost(problem.projected(place, list(map(linear_part, self.layouts))))
+        free = list(map(linear_part, self.layouts)) if free is None else free
+        return problem.cost(problem.projected(place, free))
 
 
 def towed_flags(linear: Sequence[LinearisedTow]) -> list[BoolArray]:
@@ -311,7 +324,8 @@ def linear_data(
     for tow, layout, z, own in zip(linear, layouts, at, noise, strict=True):
         slopes = columns(tow, layout, prior.std)
         if not options.nuisances:
-            slopes[..., len(prior) : layout.of_net.start] = slopes[..., layout.of_gear :] = 0.0
+            net = layout.slices['net']
+            slopes[..., len(prior) : net.start] = slopes[..., net.stop :] = 0.0
         towed = np.where(linear_part(layout), 0.0, z)
         residual = tow.residual + slopes @ towed
         groups = []

@@ -13,10 +13,9 @@ from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.time import SECOND
 from trawl_ros.estimation.motion.fallen import FallRecorder
-from trawl_ros.estimation.windows.buffers import ChannelBuffer
+from trawl_ros.estimation.windows.buffers import channel_buffers
 from trawl_ros.estimation.windows.records import Rejections, WindowOptions
 from trawl_ros.estimation.windows.statistics import MAD_TO_STD
-from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
 from trawl_ros.estimation.windows.watermark import Watermark
 from trawl_ros.records.channels import CHANNELS, INPUTS, Channel, readings
 from trawl_ros.records.samples import AttitudeSample, Sample, WinchSample
@@ -151,16 +150,7 @@ class TowRecorder:
 
     def __init__(self, pressure_to_depth: Callable[[float], float]) -> None:
         self._depth = pressure_to_depth
-        options, rejections, winch = WindowOptions(), Rejections(), Watermark()
-        self._buffers = {
-            name: ChannelBuffer(
-                channel,
-                TimestampCheck(channel, options, winch, rejections),
-                rejections,
-                MOST_READINGS,
-            )
-            for name, channel in CHANNELS.items()
-        }
+        self._buffers = channel_buffers(WindowOptions(), Watermark(), Rejections(), MOST_READINGS)
         self._payout: dict[int, tuple[float, float]] = {}
         self._falls = FallRecorder(MOST_READINGS)
 
@@ -271,3 +261,12 @@ def payout_by_counter(counter: Series) -> Series:
     speeds = _median(speeds, 1 + 2 * round(MEDIAN_REACH_S / period))
     speeds[np.abs(speeds) < STANDS_M_S] = 0.0
     return Series(0.5 * (times[first] + times[last]), speeds)
+
+
+def about_line(times: FloatArray, values: FloatArray) -> FloatArray:
+    """Readings (n,) less the line through them."""
+    away = times - times.mean()
+    square = float(away @ away)
+    slope = float(away @ values) / square if square > 0.0 else 0.0
+    left: FloatArray = values - values.mean() - slope * away
+    return left

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sizes of the errors by the marginal likelihood of all data, with a prior on each size."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.linalg import cholesky, solve_triangular
 
 from trawl_ros.core.arrays import FloatArray, Slice
 from trawl_ros.estimation.fit.error_terms import GROUPS
-from trawl_ros.estimation.least_squares.information import Information, joined
+from trawl_ros.estimation.least_squares.information import Information, Joined, joined
 from trawl_ros.estimation.motion.information import LinearGroup, group_information
 from trawl_ros.estimation.motion.processes import ErrorSizes, ErrorTimes, total_covariance
 
@@ -100,7 +100,7 @@ def _of_group(data: LinearData, expected: ErrorSizes, sizes: ErrorSizes, group: 
 
     def cost(logs: FloatArray) -> float:
         tried = np.append(factors(logs), swift)
-        return told.negative_log_likelihood(tried) + 0.5 * float(logs @ logs)
+        return told(tried) + 0.5 * float(logs @ logs)
 
     start = np.log(sizes.of_group(group)[:-1][free] / known[free]) / SPREAD[free]
     # Left to itself the simplex begins with steps of 0.00025 about 0, and ends there.
@@ -113,90 +113,53 @@ def _of_group(data: LinearData, expected: ErrorSizes, sizes: ErrorSizes, group: 
     return sizes.having(group, *map(float, factors(best.x)))
 
 
-def given_the_others(data: LinearData, sizes: ErrorSizes, group: int) -> 'GroupGivenOthers':
-    """Rows of one group in all tows, as the other groups predict them.
+def given_the_others(
+    data: LinearData, sizes: ErrorSizes, group: int
+) -> Callable[[FloatArray], float]:
+    """Negative log-likelihood of one group's rows, up to a constant, by sizes (5,) of their errors.
 
-    Their likelihood differs from that of all data by a constant, and needs no column for what is
+    Rows of all tows are taken as the other groups predict them. So no column is needed for what is
     a tow's own: hundreds of knots are eliminated once, and not with each size that is tried.
     """
     shared = data.shared
     matrix, right = np.eye(shared), np.zeros(shared)
-    rows, slopes, residuals, spreads = [], [], [], []
+    tows = []
     for groups, precision in zip(data.tows, data.precisions(sizes.log), strict=True):
         parts = group_information(groups, sizes, data.times)
-        tow = _total([part for number, part in enumerate(parts) if number != group])
-        own = tow.matrix[shared:, shared:] + np.diag(precision[shared:])
+        others = _total([part for number, part in enumerate(parts) if number != group])
+        own = others.matrix[shared:, shared:] + np.diag(precision[shared:])
         root = cholesky(own, lower=True, check_finite=False)
-        columns = groups[group].columns
+        rows, columns = groups[group].rows, groups[group].columns
         across = np.column_stack(
-            (tow.matrix[shared:, :shared], tow.right[shared:], columns[:, shared:].T)
+            (others.matrix[shared:, :shared], others.right[shared:], columns[:, shared:].T)
         )
         half = solve_triangular(root, across, lower=True, check_finite=False)
         known, ahead, back = half[:, :shared], half[:, shared], half[:, shared + 1 :]
-        matrix += tow.matrix[:shared, :shared] - known.T @ known
-        right += tow.right[:shared] - known.T @ ahead
-        rows.append(groups[group].rows)
-        slopes.append(columns[:, :shared] - back.T @ known)
-        residuals.append(groups[group].residual - back.T @ ahead)
-        spreads.append(back.T @ back)
+        matrix += others.matrix[:shared, :shared] - known.T @ known
+        right += others.right[:shared] - known.T @ ahead
+        if len(columns):
+            # Rows, covariances of their processes, derivatives, residual, and its covariance by
+            # the tow's own parameters.
+            tows.append(
+                (
+                    rows, rows.processes(data.times), columns[:, :shared] - back.T @ known,
+                    groups[group].residual - back.T @ ahead, back.T @ back,
+                )
+            )  # fmt: skip
     mean = np.linalg.solve(matrix, right)
-    away = [r - columns @ mean for r, columns in zip(residuals, slopes, strict=True)]
-    return GroupGivenOthers(
-        tuple(own.noise for own in rows),
-        tuple(own.change for own in rows),
-        tuple(own.processes(data.times) for own in rows),
-        tuple(slopes), tuple(away), tuple(spreads), matrix,
-    )  # fmt: skip
 
-
-@dataclass(frozen=True)
-class GroupGivenOthers:
-    """Rows of a group in each tow, given all other groups.
-
-    Attributes
-    ----------
-    noise, change : tuple of (m,) arrays
-        Of the rows.
-    processes
-        Covariances (m, m) of their drift, the model's error and that of the state, of size 1.
-    columns : tuple of (m, s) arrays
-        Derivatives by the shared parameters.
-    residual : tuple of (m,) arrays
-        From what the others predict.
-    spread : tuple of (m, m) arrays
-        Covariance of that by the tow's own parameters.
-    matrix : (s, s) array
-        Information of the others and the prior on the shared parameters.
-    """
-
-    noise: tuple[FloatArray, ...]
-    change: tuple[FloatArray, ...]
-    processes: tuple[tuple[FloatArray, FloatArray, FloatArray], ...]
-    columns: tuple[FloatArray, ...]
-    residual: tuple[FloatArray, ...]
-    spread: tuple[FloatArray, ...]
-    matrix: FloatArray
-
-    def negative_log_likelihood(self, sizes: FloatArray) -> float:
-        """Of the rows by sizes (5,) of their errors, up to a constant."""
-        matrix, right, value = self.matrix.copy(), np.zeros(len(self.matrix)), 0.0
-        each = zip(
-            self.noise, self.change, self.processes, self.columns, self.residual, self.spread,
-            strict=True,
-        )  # fmt: skip
-        for noise, change, processes, columns, residual, spread in each:
-            if not len(residual):
-                continue
-            covariance = total_covariance(noise, change, processes, sizes) + spread
+    def negative_log_likelihood(tried: FloatArray) -> float:
+        total = Information(matrix, np.zeros(shared), 0.0, 0.0)
+        for rows, processes, columns, residual, spread in tows:
+            covariance = total_covariance(rows.noise, rows.change, processes, tried) + spread
             root = cholesky(covariance, lower=True, check_finite=False)
-            both = np.column_stack((columns, residual))
-            white = solve_triangular(root, both, lower=True, check_finite=False)
-            matrix += white[:, :-1].T @ white[:, :-1]
-            right += white[:, :-1].T @ white[:, -1]
-            value += 0.5 * float(white[:, -1] @ white[:, -1]) + float(np.log(np.diag(root)).sum())
-        root = cholesky(matrix, lower=True)
-        half = solve_triangular(root, right, lower=True)
-        return value + float(np.log(np.diag(root)).sum()) - 0.5 * float(half @ half)
+            total = total + Information.whitened(root, columns, residual - columns @ mean)
+        rest = 0.5 * (total.square + total.log_determinant)
+        # The prior is in the matrix.
+        all_told = Joined(total.matrix, total.right, np.zeros(shared), rest)
+        return all_told.negative_log_likelihood
+
+    return negative_log_likelihood
 
 
 def _of_log(data: LinearData, expected: ErrorSizes, sizes: ErrorSizes) -> ErrorSizes:

@@ -4,8 +4,7 @@
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.motion.series import Series, TowReadings
+from trawl_ros.estimation.motion.series import Series, TowReadings, about_line
 
 TENSIONS = 'port_tension', 'starboard_tension'
 
@@ -42,16 +41,9 @@ def swell_of(read: TowReadings, stretch_s: float) -> float:
 def _swing(tension: Series, stretch_s: float) -> float:
     breaks = np.flatnonzero(np.diff((tension.times / stretch_s).astype(int))) + 1
     parts = zip(np.split(tension.times, breaks), np.split(tension.values, breaks), strict=True)
-    variances = [_about_line(*part) for part in parts if len(part[0]) >= FEWEST]
+    variances = [float(np.var(about_line(*part))) for part in parts if len(part[0]) >= FEWEST]
     if not variances:
         return 0.0
     # A winch that starts within a stretch bends its line; half of the stretches have none.
     excess = max(float(np.median(variances)) - tension.noise**2, 0.0)
     return float(np.sqrt(excess) / np.median(np.abs(tension.values)))
-
-
-def _about_line(times: FloatArray, values: FloatArray) -> float:
-    """Variance of readings (n,) about the line through them."""
-    away = times - times.mean()
-    slope = float(away @ values) / float(away @ away)
-    return float(np.var(values - slope * away))

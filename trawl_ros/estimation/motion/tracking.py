@@ -13,12 +13,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
+from trawl_ros.core.arrays import BoolArray, FloatArray
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.least_squares.descent import Damping, Rest
-from trawl_ros.estimation.least_squares.information import own_values
-from trawl_ros.estimation.least_squares.linear_problem import LinearProblem, Place
+from trawl_ros.estimation.least_squares.linear_problem import Place
 from trawl_ros.estimation.motion.fit import NEAR
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.growing import GrowingLinearisation
@@ -26,14 +25,11 @@ from trawl_ros.estimation.motion.nuisances import layout_of, place_at
 from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.estimation.motion.search import (
     COOLING_FACTOR,
-    ROUNDED,
     MotionSearch,
     is_lost,
     towed_flags,
-    without,
 )
 from trawl_ros.estimation.motion.steps import linear_problem, misfit
-from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 
@@ -216,7 +212,11 @@ class MotionTracker:
         self._towings += 1
         sizes = self._sizes.tempered(self._temper)
         linear, there = tried.linearised(search.tows), tried.place(search.tows, search.layouts)
-        if self._here is not None and not self._lower(search, linear, there, sizes):
+        free = _none_of_the_gear(search)
+        if self._here is not None and (
+            is_lost(towed_flags(linear), towed_flags(search.linear))
+            or not search.is_lower(linear, there, sizes, free)
+        ):
             self._refused += 1
             self._damping.refuse()
             if self._refused >= self._options.attempts:
@@ -228,36 +228,17 @@ class MotionTracker:
         self._damping.accept()
         data = search.data(linear, there)
         problem = linear_problem(data, there, self._prior, self._sizes, self._options.largest_step)
-        rest = misfit(data, problem, _eliminated(search, problem))
+        rest = misfit(data, problem, problem.projected(there, free))
         self._cool(min(COOLING_FACTOR * self._temper, rest))
 
     def _cool(self, temper: float) -> None:
         """Take errors of stretches for so many times as large, and no less than at the end."""
         self._temper = max(1.0, temper)
 
-    def _lower(
-        self, search: MotionSearch, tried: Sequence[LinearisedTow], there: Place, sizes: ErrorSizes
-    ) -> bool:
-        """True if the cost is lower there, and hardly a stretch is lost."""
-        if is_lost(towed_flags(tried), towed_flags(search.linear)):
-            return False
-        costs = []
-        for one, other, place in (
-            (search.linear, tried, search.here), (tried, search.linear, there),
-        ):  # fmt: skip
-            data = search.data(without(one, other), place)
-            problem = linear_problem(data, place, self._prior, sizes, self._options.largest_step)
-            costs.append(problem.cost(_eliminated(search, problem)))
-        return costs[1] <= costs[0] * ROUNDED
 
-
-def _eliminated(search: MotionSearch, problem: LinearProblem) -> list[FloatArray]:
-    """Place with all that is none of the gear itself as it fits best there.
+def _none_of_the_gear(search: MotionSearch) -> list[BoolArray]:
+    """Flags (p,) of the parameters of each tow that are none of the gear itself.
 
     Stretches that came after a linearisation began were towed without errors of their own.
     """
-    kept = search.layouts[0].of_gear
-    return [
-        np.concatenate((z[:kept], own_values(tow, precision, z[:kept])))
-        for tow, precision, z in zip(problem.blocks, problem.precisions, problem.here, strict=True)
-    ]
+    return [np.arange(len(layout)) >= layout.of_gear for layout in search.layouts]

@@ -194,19 +194,11 @@ class Adviser:
             return None
         return replace(self._promise(fit, ranking[0].manoeuvre, known), ranking=ranking)
 
-    def ranking(self, fit: Fit) -> tuple[RankedManoeuvre, ...]:
-        """Rank the `known` manoeuvres by what they gain per minute, the best one first.
+    def _rank(self, fit: Fit, known: _Known) -> tuple[RankedManoeuvre, ...]:
+        """Rank manoeuvres by what they gain per minute, the best one first.
 
         The state of the newest window is not among them: as it goes on it gives no more windows.
-
-        Parameters
-        ----------
-        fit
-            Without a window the ranking is empty.
         """
-        return self._rank(fit, self._serving())
-
-    def _rank(self, fit: Fit, known: _Known) -> tuple[RankedManoeuvre, ...]:
         if not fit.windows or not known:
             return ()
         question = LawQuestion.of(fit, self._predictor.model.board.law)
@@ -241,19 +233,8 @@ class Adviser:
             and abs(manoeuvre.speed - here.speed) <= speed
         )
 
-    def promise(self, fit: Fit, manoeuvre: Manoeuvre) -> Advice:
-        """Predict the gain of one of the `known` manoeuvres, by the fit itself.
-
-        Parameters
-        ----------
-        fit
-            With one window at least.
-        manoeuvre
-            The next manoeuvre.
-        """
-        return self._promise(fit, manoeuvre, self._serving())
-
     def _promise(self, fit: Fit, manoeuvre: Manoeuvre, known: _Known) -> Advice:
+        """Predict the gain of a known manoeuvre, by the fit itself."""
         question = LawQuestion.of(fit, self._predictor.model.board.law)
         windows = expected_windows(fit, known[manoeuvre], self._windows.max_windows_per_state)
         now = fit.posterior.covariance

@@ -163,7 +163,7 @@ def plan_for(
     ):
         done = [leg.manoeuvre for leg in chosen]
         known, by_data, as_filed = (
-            asked.quantities(Designer(asked, candidates, noise).fitted(done))
+            Designer(asked, candidates, noise).quantities(done)
             for asked, candidates in (
                 (problem, choice.candidates),
                 (data_alone, choice.candidates),

@@ -14,7 +14,7 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
-from trawl_ros.estimation.fit.laws import WELL_KNOWN, LawQuantities, WorkingAngles, law_quantities
+from trawl_ros.estimation.fit.laws import WELL_KNOWN, LawQuantities
 from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.planning.duration import (
@@ -27,14 +27,13 @@ from trawl_ros.estimation.planning.duration import (
 )
 from trawl_ros.estimation.planning.information import (
     covariance_from,
-    fitted_covariance,
     information_before,
     information_of,
 )
+from trawl_ros.estimation.planning.law_question import LawQuestion
 from trawl_ros.estimation.planning.states import Manoeuvre, TowableManoeuvre
 from trawl_ros.estimation.planning.windows import TABLE_NOISE, imagined_windows
 from trawl_ros.estimation.windows.records import WindowOptions
-from trawl_ros.model.board_laws import BoardLaw
 
 MIN_GAIN = 1e-9
 """Smallest fall of the shortfall, or relative rise of its rate, that counts; less is rounding."""
@@ -55,7 +54,7 @@ def shortfall(quantities: LawQuantities) -> float:
 
 
 @dataclass(frozen=True)
-class DesignProblem:
+class DesignProblem(LawQuestion):
     """Problem of optimal design: what to learn, how it is estimated, and the time for it.
 
     Attributes
@@ -78,19 +77,11 @@ class DesignProblem:
         Time for the trial, min.
     """
 
-    law: BoardLaw
-    coefficients: FloatArray
     prior: ParameterVector
-    angles: WorkingAngles
-    span: FloatArray
     estimator: EstimatorOptions
     windows: WindowOptions
     vessel: VesselLimits
     minutes: float
-
-    def quantities(self, covariance: FloatArray) -> LawQuantities:
-        """Return value and slope of the laws for a covariance (q, q) of the coefficients."""
-        return law_quantities(self.law, self.coefficients, covariance, self.angles, self.span)
 
 
 class Designer:
@@ -122,7 +113,7 @@ class Designer:
         self._before = information_before(problem.prior, problem.estimator)
         # Information matrix of the windows of each candidate.
         self._gained = [
-            information_of(self._windows(candidate, 0), problem.prior, problem.estimator)
+            information_of(self._windows(candidate), problem.prior, problem.estimator)
             for candidate in self.candidates
         ]
 
@@ -139,13 +130,13 @@ class Designer:
         legs = self.timetable.legs(ordered)
         return legs if minutes_of(legs) <= self.problem.minutes else None
 
-    def _windows(self, candidate: TowableManoeuvre, state: int) -> tuple[Linearised, ...]:
-        """Predict the steady windows of a candidate; ``state`` is their state number."""
+    def _windows(self, candidate: TowableManoeuvre) -> tuple[Linearised, ...]:
+        """Predict the steady windows of a candidate."""
         problem = self.problem
         return imagined_windows(
             candidate,
             problem.coefficients,
-            state=state,
+            state=0,
             number=problem.windows.max_windows_per_state,
             noise=self.noise,
             to_come=rest_of(candidate, problem.windows).to_come(problem.windows),
@@ -154,8 +145,8 @@ class Designer:
     def information(self, manoeuvres: Sequence[Manoeuvre], times: float = 1.0) -> FloatArray:
         """Return the information matrix after manoeuvres, each repeated ``times`` times.
 
-        It includes the prior's, and is in units of the prior std. Its last q rows belong to the
-        coefficients; those before them belong to errors that all windows share.
+        It includes the prior's, and is in units of the prior std. Its first q rows belong to the
+        coefficients; those behind them belong to errors that all windows share.
         """
         gained = [self._gained[self._number[manoeuvre]] for manoeuvre in manoeuvres]
         return self._before + times * sum(gained)
@@ -163,19 +154,6 @@ class Designer:
     def covariance(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
         """Return the posterior covariance (q, q) of the coefficients after manoeuvres."""
         return covariance_from(self.information(manoeuvres), self.problem.prior)
-
-    def fitted(self, manoeuvres: Sequence[Manoeuvre]) -> FloatArray:
-        """Return the posterior covariance (q, q) that the estimator itself computes.
-
-        It agrees with `covariance`, which is faster and is used in the search.
-        """
-        problem = self.problem
-        windows = [
-            linear
-            for state, manoeuvre in enumerate(manoeuvres)
-            for linear in self._windows(self.candidates[self._number[manoeuvre]], state)
-        ]
-        return fitted_covariance(windows, problem.coefficients, problem.prior, problem.estimator)
 
     def quantities(self, manoeuvres: Sequence[Manoeuvre]) -> LawQuantities:
         """Return value and slope of the laws after manoeuvres."""

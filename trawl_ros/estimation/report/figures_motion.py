@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.motion.outcome import HALF_95, MotionOutcome
+from trawl_ros.estimation.motion.outcome import MotionOutcome
+from trawl_ros.estimation.report.figures_coefficients import SHADED
 from trawl_ros.report.style import FAINT, MEASURED, PORT, SECOND, quiet
 
 
@@ -18,11 +19,11 @@ def motion_figure(motion: MotionOutcome, truth: FloatArray | None) -> Figure:
     assert motion.windows is not None
     both = (
         ('steady windows', motion.windows.values, motion.windows.std, SECOND, -0.15),
-        ('whole tow', motion.fit.values, motion.std, MEASURED, 0.15),
+        ('whole tow', motion.fit.values, motion.estimate.std, MEASURED, 0.15),
     )
     for words, values, std, colour, beside in both:
         estimates.errorbar(
-            place + beside, prior.departure(values), HALF_95 * std / prior.std, fmt='o',
+            place + beside, prior.departure(values), SHADED * std / prior.std, fmt='o',
             color=colour, capsize=3, ms=4, label=f'{words}, 95 % interval',
         )  # fmt: skip
         shares.bar(place + beside, std / prior.std, 0.3, color=colour, label=words)

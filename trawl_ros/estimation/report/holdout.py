@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hold-out errors: prediction of whole tows, or whole steady states, left out of the fit."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.estimator import Estimator
-from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
-from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, stack
+from trawl_ros.estimation.motion.holdout import folds_of
 
 NEAR_ENOUGH = 0.1
 """Step, in std, at which fits for hold-out have converged."""
@@ -38,9 +37,9 @@ class HeldOut:
         In the order of `PAPER_CHANNELS`, NaN where a fit or a steady state is missing.
     """
 
-    by: str
-    groups: int
-    predicted: FloatArray
+    by: str = 'tow'
+    groups: int = 0
+    predicted: FloatArray = field(default_factory=lambda: stack(()))
 
 
 def hold_out(
@@ -70,16 +69,9 @@ def hold_out(
     windows = estimator.windows
     predicted = np.full((len(windows), len(PAPER_CHANNELS)), np.nan)
     states = {window.state for window in windows}
-    tows = sorted({window.tow for window in windows})
-    if len(tows) > 1:
-        by, groups = 'tow', len(tows)
-        folds_of_states = [_states(windows, tow) for tow in tows]
-    else:
-        by, groups = 'state', len(states)
-        order = np.random.default_rng(seed).permutation(sorted(states))
-        folds_of_states = [
-            set(fold.tolist()) for fold in np.array_split(order, min(folds, max(groups, 1)))
-        ]
+    by = 'tow' if len({window.tow for window in windows}) > 1 else 'state'
+    groups = len({getattr(window, by) for window in windows})
+    folds_of_states = folds_of(windows, folds, seed)
     if groups < 2:
         return HeldOut(by, groups, predicted)
     options = replace(
@@ -102,7 +94,3 @@ def hold_out(
         inputs = rest.inputs_of(unseen)
         predicted[rows] = rest.predictions(rest.coefficients, unseen, inputs=inputs)
     return HeldOut(by, groups, predicted)
-
-
-def _states(windows: Sequence[SteadyWindow], tow: int) -> set[int]:
-    return {window.state for window in windows if window.tow == tow}

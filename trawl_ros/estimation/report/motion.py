@@ -12,13 +12,13 @@ from trawl_ros.core.files import finite
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.report.net import net_lines, net_result
-from trawl_ros.estimation.report.report import Report
+from trawl_ros.estimation.report.report import Report, interval_row
 
 MAX_NAMED_STRETCHES = 3
 """Largest number of badly fitting stretches that the sentence about them names."""
 
 
-def coefficient_rows(motion: MotionOutcome, truth: FloatArray | None) -> list[dict[str, object]]:
+def motion_rows(motion: MotionOutcome, truth: FloatArray | None) -> list[dict[str, object]]:
     """Return a row for each coefficient, all without unit.
 
     Parameters
@@ -42,21 +42,15 @@ def coefficient_rows(motion: MotionOutcome, truth: FloatArray | None) -> list[di
             'prior_std': float(motion.prior.std[i]),
             'windows': None if windows is None else float(windows.values[i]),
             'windows_std': None if windows is None else float(windows.std[i]),
-            'value': float(motion.fit.values[i]),
-            'std': float(motion.std[i]),
-            'low': float(motion.low[i]),
-            'high': float(motion.high[i]),
+            **interval_row(motion.estimate, truth, i),
             'ratio': None if windows is None else float(motion.ratio[i]),
         }
-        if truth is not None:
-            row['truth'] = float(truth[i])
-            row['inside'] = bool(motion.low[i] <= truth[i] <= motion.high[i])
         rows.append(row)
     return rows
 
 
 def motion_table(report: Report) -> Table:
-    """Return the table of `coefficient_rows`; the report must have windows and a whole-tow fit."""
+    """Return the table of `motion_rows`; the report must have windows and a whole-tow fit."""
     motion = report.motion
     assert motion is not None
     minutes = motion.duration_s / 60.0
@@ -67,7 +61,7 @@ def motion_table(report: Report) -> Table:
         headings += ['truth', 'in interval']
     for heading in headings:
         table.add_column(heading, justify='right', no_wrap=True)
-    for row in coefficient_rows(motion, report.truth):
+    for row in motion_rows(motion, report.truth):
         cells = [
             f'{row["prior_std"]:.3f}',
             f'{row["windows"]:.3f} ± {row["windows_std"]:.3f}',
@@ -150,7 +144,7 @@ def motion_result(report: Report) -> dict[str, object]:
     fit = motion.fit
     whole = mnae(motion.held_out, report.measured)
     return {
-        'coefficients': {row.pop('name'): row for row in coefficient_rows(motion, report.truth)},
+        'coefficients': {row.pop('name'): row for row in motion_rows(motion, report.truth)},
         'covariance': fit.covariance.tolist(),
         'geometric_means': motion.geometric_means
         if report.windows

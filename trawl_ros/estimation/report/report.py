@@ -3,7 +3,7 @@
 """Report of an identification, computed once for JSON, figures and page."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -19,8 +19,8 @@ from trawl_ros.estimation.fit.laws import (
     law_spans,
     working_angles,
 )
-from trawl_ros.estimation.fit.linearised import Linearised
-from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, mnae, objective, paper_values, stack
+from trawl_ros.estimation.fit.linearised import Linearised, paper_rows
+from trawl_ros.estimation.fit.objective import mnae, objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
@@ -29,11 +29,10 @@ from trawl_ros.estimation.report.residuals import (
     ChannelResiduals,
     innovations,
     residuals,
-    solve_windows,
 )
 from trawl_ros.estimation.report.sensors import SensorComparison, compare_sensors
 from trawl_ros.estimation.report.spectrum import Spectrum, spectrum
-from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.estimation.windows.records import REASONS, Rejections, SteadyWindow
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.model.board_laws import BoardLaw
 from trawl_ros.model.gear_model import build_board
@@ -74,8 +73,8 @@ class Report:
 
     Attributes
     ----------
-    estimate, prior
-        End and start of the fit.
+    estimate
+        End of the fit.
     prior_weight
         1 where the prior was used, 0 where the data alone decided.
     truth : (q,) array or None
@@ -101,8 +100,6 @@ class Report:
         The windows, each with the estimate after it, as they came.
     history
         The steps of the iteration.
-    spectrum
-        Information of the data by direction.
     law
         Law of the boards; None where the gear is not at hand, or has no boards.
     laws
@@ -125,29 +122,37 @@ class Report:
     """
 
     estimate: Estimate
-    prior: ParameterVector
-    prior_weight: float
-    truth: FloatArray | None
+    tows: tuple[str, ...]
     rejected: dict[str, int]
     found: dict[str, str]
-    windows: tuple[SteadyWindow, ...]
-    tows: tuple[str, ...]
-    measured: FloatArray
-    at_start: FloatArray
-    at_end: FloatArray
-    held_out: HeldOut
-    at_truth: FloatArray | None
-    residuals: tuple[ChannelResiduals, ...]
-    innovations: tuple[ChannelResiduals, ...]
-    course: tuple[WindowUsed, ...]
-    history: tuple[Progress, ...]
-    spectrum: Spectrum
-    law: BoardLaw | None
-    laws: KnownLaws | None
+    truth: FloatArray | None = None
+    law: BoardLaw | None = None
+    prior_weight: float = 1.0
+    windows: tuple[SteadyWindow, ...] = ()
+    measured: FloatArray = field(default_factory=lambda: stack(()))
+    at_start: FloatArray = field(default_factory=lambda: stack(()))
+    at_end: FloatArray = field(default_factory=lambda: stack(()))
+    held_out: HeldOut = field(default_factory=HeldOut)
+    at_truth: FloatArray | None = None
+    residuals: tuple[ChannelResiduals, ...] = ()
+    innovations: tuple[ChannelResiduals, ...] = ()
+    course: tuple[WindowUsed, ...] = ()
+    history: tuple[Progress, ...] = ()
+    laws: KnownLaws | None = None
     paired: bool = False
     motion: MotionOutcome | None = None
     motion_refused: str = ''
     sensors: tuple[SensorComparison, ...] = ()
+
+    @property
+    def prior(self) -> ParameterVector:
+        """Prior of the coefficients."""
+        return self.estimate.prior
+
+    @property
+    def spectrum(self) -> Spectrum:
+        """Information of the data by direction."""
+        return spectrum(self.estimate.covariance, self.prior, self.prior_weight)
 
     @property
     def inputs(self) -> FloatArray:
@@ -231,42 +236,100 @@ def report(
     estimator, estimate = identification.estimator, identification.estimate
     if estimate is None:
         raise TrawlError(identification.why_not() or 'nothing is estimated')
-    windows, weight = estimator.windows, estimator.options.prior_weight
+    windows = estimator.windows
     number = 1 + max(window.tow for window in windows)
     own = [linear.state for linear in estimator.fit.windows]
-    at_end = solve_windows(estimator, estimate.values, estimator.fit.net, own)
-    at_start = solve_windows(estimator, estimator.prior.start)
+    at_end = estimator.solve(estimate.values, net=estimator.fit.net, own=own)
+    at_start = estimator.solve(estimator.prior.start)
     cases, law = {'start': at_start, 'refitted': at_end}, None
     if gear is not None and gear.pair is None:
         law = build_board(gear).law
         written = gear.board.coefficients.array()
         known = np.array_equal(written, estimator.prior.start)
-        by_gear = at_start if known else solve_windows(estimator, written)
+        by_gear = at_start if known else estimator.solve(written)
         cases = {'gear_file': by_gear, **cases}
     return Report(
         estimate=estimate,
-        prior=estimator.prior,
-        prior_weight=weight,
-        truth=None if truth is None else np.asarray(truth, dtype=float),
+        prior_weight=estimator.options.prior_weight,
+        truth=truth,
         rejected=identification.rejected,
         found=identification.found,
         windows=windows,
         tows=tuple(tows) or tuple(f'tow {tow + 1}' for tow in range(number)),
         measured=stack([paper_values(window.means) for window in windows]),
-        at_start=_values(at_start),
-        at_end=_values(at_end),
+        at_start=paper_rows(at_start),
+        at_end=paper_rows(at_end),
         held_out=hold_out(estimator, folds, on_progress=on_progress),
-        at_truth=None if truth is None else _values(solve_windows(estimator, np.asarray(truth))),
+        at_truth=None if truth is None else paper_rows(estimator.solve(truth)),
         residuals=residuals(at_end),
         innovations=innovations(identification.course),
         course=tuple(identification.course),
         history=tuple(estimator.history),
-        spectrum=spectrum(estimate.covariance, estimator.prior, weight),
         law=law,
         laws=None if law is None else _laws(law, at_end, estimate),
         paired=gear is not None and gear.pair is not None,
         sensors=compare_sensors(cases),
     )
+
+
+def report_in_motion(
+    motion: MotionOutcome,
+    rejections: Sequence[Rejections],
+    gear: GearRecord,
+    truth: FloatArray | None = None,
+) -> Report:
+    """Compute the report of tows that were learned from in motion alone.
+
+    Parameters
+    ----------
+    motion
+        Outcome of their fit.
+    rejections
+        Of the recordings, none of which has a window.
+    gear
+        Gear of the boards.
+    truth
+        True coefficients (q,), where known.
+    """
+    every = Rejections()
+    for rejected in rejections:
+        every.counts.update(rejected.counts)
+        every.sentences.update(rejected.sentences)
+    return Report(
+        estimate=motion.estimate,
+        tows=motion.names,
+        rejected={key: every.counts[key] for key in REASONS if every.counts[key]},
+        found={key: every.sentences[key] for key in REASONS if key in every.sentences},
+        truth=truth,
+        law=build_board(gear).law,
+        motion=motion,
+    )
+
+
+def interval_row(estimate: Estimate, truth: FloatArray | None, i: int) -> dict[str, object]:
+    """Row of a coefficient: value, std and interval, and whether the truth is inside, if known."""
+    low, high = float(estimate.low[i]), float(estimate.high[i])
+    row: dict[str, object] = {
+        'value': float(estimate.values[i]), 'std': float(estimate.std[i]), 'low': low, 'high': high,
+    }  # fmt: skip
+    if truth is not None:
+        row |= {'truth': float(truth[i]), 'inside': bool(low <= truth[i] <= high)}
+    return row
+
+
+def coefficient_rows(report: Report) -> list[dict[str, object]]:
+    """Return a row for each coefficient, all without unit."""
+    estimate = report.estimate
+    return [
+        {
+            'name': name,
+            'start': float(estimate.prior.start[i]),
+            **interval_row(estimate, report.truth, i),
+            'shrink': float(estimate.shrink[i]),
+            'determined': estimate.determined[i],
+        }
+        for i, name in enumerate(estimate.names)
+    ]
 
 
 def _laws(
@@ -282,16 +345,4 @@ def _laws(
         attack=(min(attack), max(attack)),
         angles=angles,
         quantities=law_quantities(law, estimate.values, estimate.covariance, angles, span),
-    )
-
-
-def _values(linearised: Sequence[Linearised | None]) -> FloatArray:
-    """Values of the channels of eq. 35 (n, 4), NaN where there is no steady state."""
-    return stack(
-        [
-            np.full(len(PAPER_CHANNELS), np.nan)
-            if linear is None
-            else paper_values(dict(zip(linear.channels, linear.solved, strict=True)))
-            for linear in linearised
-        ]
     )

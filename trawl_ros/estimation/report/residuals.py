@@ -4,21 +4,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, IntArray
-from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.fitted_estimate import GATE
-from trawl_ros.estimation.fit.linearised import Linearised, linearise
+from trawl_ros.estimation.fit.linearised import Linearised
 from trawl_ros.estimation.fit.whiteness import Whiteness, ljung_box
 from trawl_ros.estimation.pipeline import WindowUsed
 from trawl_ros.records.channels import CHANNELS, INPUTS, MEASURED
-
-if TYPE_CHECKING:
-    from trawl_ros.solver.equilibrium import Equilibrium
 
 
 @dataclass(frozen=True)
@@ -74,63 +68,13 @@ class ChannelResiduals:
         return ljung_box([self.scaled[self.tows == tow] for tow in np.unique(self.tows)])
 
 
-def solve_windows(
-    estimator: Estimator,
-    coefficients: FloatArray,
-    net: FloatArray | None = None,
-    own: Sequence['Equilibrium'] = (),
-) -> list[Linearised | None]:
-    """Solve the model at the inputs of each window.
-
-    It is solved from its own state where that is known, else from the nearest one already solved.
-
-    Parameters
-    ----------
-    estimator
-        With the windows of the fit.
-    coefficients
-        Shape (q,).
-    net
-        Factors (2,) on drag and weight of the net; as in the gear file if None.
-    own
-        Steady states of the windows at these coefficients or nearby.
-
-    Returns
-    -------
-    list
-        In the order of the windows; None where the model has no steady state.
-    """
-    solved_in_order: list[Linearised | None] = []
-    inputs = np.array([[window.means[name] for name in INPUTS] for window in estimator.windows])
-    without: set[int] = set()
-    for row, window in enumerate(estimator.windows):
-        if window.state in without:
-            # It takes long to find that there is none, and is the same throughout a state.
-            solved_in_order.append(None)
-            continue
-        away = np.abs(inputs[:row] / inputs[row] - 1.0).sum(axis=1)
-        solved = [solved_in_order[i] for i in np.argsort(away, kind='stable')]
-        near = next((linear.state for linear in solved if linear is not None), None)
-        starts = (*own[row : row + 1], *(() if near is None else (near,)), None)
-        try:
-            linear = linearise(
-                estimator.predictor, estimator.observables, window, coefficients, starts, net=net
-            )
-        except NoSteadyState:
-            without.add(window.state)
-            solved_in_order.append(None)
-        else:
-            solved_in_order.append(linear)
-    return solved_in_order
-
-
 def residuals(linearised: Sequence[Linearised | None]) -> tuple[ChannelResiduals, ...]:
     """Collect the residuals of each channel that any of the windows has.
 
     Parameters
     ----------
     linearised
-        From `solve_windows`, at the estimate.
+        From `Estimator.solve`, at the estimate.
     """
     rows: dict[str, list[tuple[int, int, float, float]]] = {}
     for i, linear in enumerate(linearised):

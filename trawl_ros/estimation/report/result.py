@@ -9,9 +9,15 @@ from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.motion import motion_result
 from trawl_ros.estimation.report.net import net_result
-from trawl_ros.estimation.report.report import Report
+from trawl_ros.estimation.report.report import Report, coefficient_rows
 from trawl_ros.estimation.report.residuals import ChannelResiduals
 from trawl_ros.estimation.windows.noise_density import noise_densities
+
+COEFFICIENT_KEYS = 'start', 'value', 'std', 'low', 'high', 'shrink', 'determined'
+"""Keys of a coefficient."""
+
+BIAS_KEYS = 'unit', 'value', 'std', 'known'
+"""Keys of a bias."""
 
 
 def result(report: Report) -> dict[str, object]:
@@ -23,16 +29,8 @@ def result(report: Report) -> dict[str, object]:
         'rejected': dict(report.rejected),
         'objective': {key: finite(value) for key, value in report.objectives.items()},
         'coefficients': {
-            name: {
-                'start': float(report.prior.start[i]),
-                'value': float(estimate.values[i]),
-                'std': float(estimate.std[i]),
-                'low': float(estimate.low[i]),
-                'high': float(estimate.high[i]),
-                'shrink': float(estimate.shrink[i]),
-                'determined': estimate.determined[i],
-            }
-            for i, name in enumerate(estimate.names)
+            row['name']: {key: row[key] for key in COEFFICIENT_KEYS}
+            for row in coefficient_rows(report)
         },
         'channels': {
             channel.name: {
@@ -117,12 +115,7 @@ def _tows(report: Report) -> list[dict[str, object]]:
                     for channel, error in zip(PAPER_CHANNELS, tow.held_out, strict=True)
                 },
                 'biases': {
-                    bias.channel: {
-                        'unit': bias.unit,
-                        'value': bias.value,
-                        'std': bias.std,
-                        'known': bias.known,
-                    }
+                    bias.channel: {key: getattr(bias, key) for key in BIAS_KEYS}
                     for bias in report.estimate.tow_biases
                     if bias.tow == tow.tow
                 },

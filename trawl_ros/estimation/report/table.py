@@ -9,7 +9,7 @@ from rich.table import Table
 from trawl_ros.core.display_units import METRIC, DisplayUnits, quantity_of
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
 from trawl_ros.estimation.report.page import percent
-from trawl_ros.estimation.report.report import Report
+from trawl_ros.estimation.report.report import Report, coefficient_rows
 from trawl_ros.estimation.report.sensors import SensorComparison, sensor_cells, sensor_headings
 from trawl_ros.estimation.report.verdict import verdict
 
@@ -26,16 +26,11 @@ def coefficient_table(report: Report) -> Table:
         headings += ['truth', 'in interval']
     for heading in (*headings, 'determined'):
         table.add_column(heading, justify='right')
-    estimate = report.estimate
-    for i, name in enumerate(estimate.names):
-        numbers = [report.prior.start[i], estimate.values[i], estimate.low[i], estimate.high[i]]
-        cells = [f'{number:.3f}' for number in numbers]
+    for row in coefficient_rows(report):
+        cells = [f'{row[key]:.3f}' for key in ('start', 'value', 'low', 'high')]
         if report.truth is not None:
-            truth = report.truth[i]
-            inside = estimate.low[i] <= truth <= estimate.high[i]
-            cells += [f'{truth:.3f}', 'yes' if inside else '[red]no[/red]']
-        cells.append('yes' if estimate.determined[i] else 'no')
-        table.add_row(name, *cells)
+            cells += [f'{row["truth"]:.3f}', 'yes' if row['inside'] else '[red]no[/red]']
+        table.add_row(str(row['name']), *cells, 'yes' if row['determined'] else 'no')
     return table
 
 

@@ -8,10 +8,10 @@ from bisect import bisect_left
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, StampArray
-from trawl_ros.estimation.windows.records import Rejections
+from trawl_ros.estimation.windows.records import Rejections, WindowOptions
 from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
-from trawl_ros.estimation.windows.watermark import NANO
-from trawl_ros.records.channels import Channel, Reading
+from trawl_ros.estimation.windows.watermark import NANO, Watermark
+from trawl_ros.records.channels import CHANNELS, Channel, Reading
 
 CAPACITY = 50_000
 """Readings usually kept per channel at most: a minute at more than 500 Hz."""
@@ -155,3 +155,21 @@ class ChannelBuffer:
         del self._stamps[:first], self._values[:first], self._stds[:first]
         if self._outside:
             self._outside = [row for row in self._outside if row[0] >= stamp_ns]
+
+
+def channel_buffers(
+    options: WindowOptions,
+    winch_watermark: Watermark,
+    rejections: Rejections,
+    capacity: int = CAPACITY,
+) -> dict[str, ChannelBuffer]:
+    """Return a buffer for each channel; all count what they refuse together."""
+    return {
+        name: ChannelBuffer(
+            channel,
+            TimestampCheck(channel, options, winch_watermark, rejections),
+            rejections,
+            capacity,
+        )
+        for name, channel in CHANNELS.items()
+    }

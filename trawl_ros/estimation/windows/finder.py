@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.windows.buffers import ChannelBuffer
+from trawl_ros.estimation.windows.buffers import channel_buffers
 from trawl_ros.estimation.windows.channel_means import ChannelMean, channel_mean
 from trawl_ros.estimation.windows.operation import Block, Operation, Unheld
 from trawl_ros.estimation.windows.over_ground import ground_track
@@ -27,7 +27,6 @@ from trawl_ros.estimation.windows.records import (
 )
 from trawl_ros.estimation.windows.sounder import Sounder
 from trawl_ros.estimation.windows.statistics import circular_median
-from trawl_ros.estimation.windows.timestamp_check import TimestampCheck
 from trawl_ros.estimation.windows.watermark import NANO, Watermark
 from trawl_ros.records.channels import CHANNELS, INPUTS, REQUIRED, WITNESSES, readings
 from trawl_ros.records.samples import Sample
@@ -83,14 +82,7 @@ class SteadyWindowFinder:
 
     def _clear(self) -> None:
         self._winch_watermark = Watermark()
-        self._buffers = {
-            name: ChannelBuffer(
-                channel,
-                TimestampCheck(channel, self._options, self._winch_watermark, self.rejections),
-                self.rejections,
-            )
-            for name, channel in CHANNELS.items()
-        }
+        self._buffers = channel_buffers(self._options, self._winch_watermark, self.rejections)
         self._operation = Operation(self._options)
         self._sounder = Sounder()
         self._next_block: int | None = None

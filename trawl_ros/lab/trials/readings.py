@@ -11,7 +11,8 @@ from scipy.signal import lfilter
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.time import SECOND
-from trawl_ros.estimation.fit.error_terms import Scheme, group_of
+from trawl_ros.estimation.fit.error_terms import group_of
+from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.windows.records import SteadyWindow, WindowOptions
 from trawl_ros.estimation.windows.statistics import error_of_mean
 from trawl_ros.lab.trials.linearised_plant import LinearisedState
@@ -90,11 +91,11 @@ class Sensors:
     """Sensors of a trial.
 
     ``factors`` multiply the stated noise and biases of each quantity. ``state_share`` is the part
-    of a bias that changes with the state, as in `Scheme`.
+    of a bias that changes with the state, as in `EstimatorOptions`.
     """
 
     factors: Mapping[str, float]
-    state_share: float = Scheme.state_share
+    state_share: float = EstimatorOptions.state_share
 
     def factor(self, name: str) -> float:
         """Factor of a channel or input."""

@@ -145,7 +145,7 @@ def motion_status(motion: MotionKnowledge, windows: Estimate | None) -> Status:
         }
         for i, coefficient in enumerate(outcome.prior.names):
             values[coefficient] = f'{outcome.fit.values[i]:.9g}'
-            values[f'{coefficient} std'] = f'{outcome.std[i]:.6g}'
+            values[f'{coefficient} std'] = f'{outcome.estimate.std[i]:.6g}'
             if windows is not None:
                 values[f'{coefficient} by windows'] = f'{windows.values[i]:.9g}'
                 values[f'{coefficient} std by windows'] = f'{windows.std[i]:.6g}'

@@ -81,7 +81,7 @@ class ReportWriter:
         except TrawlError as reason:
             raise TrawlError(f'{why_not}; nor in motion: {reason}') from reason
         if self._folder is not None:
-            from trawl_ros.estimation.report.in_motion import report_in_motion
+            from trawl_ros.estimation.report.report import report_in_motion
 
             rejections = [identification.finder.rejections]
             self._write(report_in_motion(outcome, rejections, self._gear, self._truth))

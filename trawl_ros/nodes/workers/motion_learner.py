@@ -195,13 +195,11 @@ class MotionLearner:
         why_not: str,
         whole: bool = False,
     ) -> None:
-        from trawl_ros.estimation.report.in_motion import estimate_in_motion
-
         estimate = None
         if usable:
             self._revision += 1
             estimate = replace(
-                estimate_in_motion(outcome),
+                outcome.estimate,
                 revision=self._revision + (windows.revision if windows else 0),
                 stamp=stamp,
                 windows=windows.windows if windows else 0,

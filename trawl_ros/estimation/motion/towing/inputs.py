@@ -16,44 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray, Slice
+from trawl_ros.estimation.fit.error_terms import channel_errors
 from trawl_ros.estimation.motion.towing.knots import Knots, hats
-from trawl_ros.records.channels import CHANNELS, INPUTS
+from trawl_ros.records.channels import INPUTS
 from trawl_ros.solver.motion.course import InputPoint
-
-
-@dataclass(frozen=True)
-class ChannelError:
-    """Error of a channel that is constant through the tow: measured minus true.
-
-    Attributes
-    ----------
-    channel
-        Name of the channel.
-    std
-        Prior std, in the channel's unit, or as a fraction of the value if ``relative``.
-    relative
-        True for a scale error, False for an offset.
-    """
-
-    channel: str
-    std: float
-    relative: bool
-
-    @property
-    def name(self) -> str:
-        """Name of the parameter."""
-        return f'{self.channel} {"scale" if self.relative else "offset"}'
-
-
-def channel_errors(channels: Sequence[str]) -> tuple[ChannelError, ...]:
-    """Return the constant errors of channels that the channel table gives a std for."""
-    return tuple(
-        ChannelError(name, std, relative)
-        for name in channels
-        for std, relative in ((CHANNELS[name].bias, False), (CHANNELS[name].bias_fraction, True))
-        if std > 0.0
-    )
-
 
 INPUT_ERRORS = channel_errors(INPUTS)
 """Constant errors of the warp counters and the log through a tow, by the channel table."""

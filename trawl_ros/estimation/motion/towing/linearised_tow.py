@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Record of a tow in motion at a point: predicted means of its stretches, and their derivatives."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,18 +24,12 @@ class LinearisedTow:
         The tow, and where it is linearised.
     values : (n, k) array
         Predicted means; NaN in stretches that are left out.
-    by_coefficients : (n, k, q) array
-    by_added_mass : (n, k, 1) array
-    by_errors : (n, k, e) array
-        By a std of each of `INPUT_ERRORS`.
-    by_knots : (n, k, knots) array
-        By an input's error at each knot, per SI unit.
-    by_starts : (n, k, starts) array
-        By the amplitudes (m) of the slowest motions with which each part may begin.
-    by_net : (n, k, 2 or 0) array
-        By the factors on drag and weight of the net.
-    by_examined : (n, k, values) array
-        By the values of the effects that are examined, of what they do to the gear and its inputs.
+    by
+        Derivatives (n, k, m) by each group of parameters: ``coefficients``, ``added_mass``, ``net``
+        (drag and weight, where they are estimated), ``examined`` (values of the effects that are
+        examined, of what they do to the gear and its inputs), ``errors`` (a std of each of
+        `INPUT_ERRORS`), ``starts`` (amplitudes, m, of the slowest motions with which each part may
+        begin), and each input's error at its knots, per SI unit, by the input's name.
     left_out
         Stretches that cannot be predicted, and why.
     """
@@ -42,45 +37,38 @@ class LinearisedTow:
     tow: MovingTow
     point: TowedPoint
     values: FloatArray
-    by_coefficients: FloatArray
-    by_added_mass: FloatArray
-    by_errors: FloatArray
-    by_knots: FloatArray
-    by_starts: FloatArray
-    by_net: FloatArray
-    by_examined: FloatArray
+    by: Mapping[str, FloatArray]
     left_out: tuple[LeftOut, ...]
 
     @classmethod
-    def empty(
-        cls, tow: MovingTow, point: TowedPoint, gear: TowedGear, left_out: tuple[LeftOut, ...]
-    ) -> 'LinearisedTow':
-        """Tow without any prediction."""
-        of_examined = sum(len(effect.parameters) for effect in gear.examined)
-        of_inputs = len(INPUT_ERRORS), tow.inputs.number_of_knots
-        widths = (len(point.coefficients), 1, *of_inputs, tow.starts, gear.of_net, of_examined)
-        coefficients, mass, errors, knots, starts, net, examined = (
-            np.zeros((*tow.means.shape, width)) for width in widths
-        )
-        values = np.full(tow.means.shape, np.nan)
-        return cls(
-            tow, point, values, coefficients, mass, errors, knots, starts, net, examined, left_out
-        )
+    def of(
+        cls, tow: MovingTow, point: TowedPoint, gear: TowedGear,
+        means: Sequence[Linearisation | None], left_out: tuple[LeftOut, ...],
+    ) -> 'LinearisedTow':  # fmt: skip
+        """Gather predictions of the stretches of a tow, in their order; None where there is none.
 
-    def put(self, stretch: int, means: Linearisation) -> None:
-        """Put the prediction of a stretch in its place."""
-        by = means.by
-        self.values[stretch] = means.values
-        self.by_coefficients[stretch] = by['coefficients']
-        self.by_added_mass[stretch] = by['added_mass']
-        self.by_errors[stretch] = by['errors']
-        for knots, own, _ in self.tow.inputs.knot_places:
-            slopes = by[knots.channel]
-            self.by_knots[stretch][:, own.start : own.start + slopes.shape[1]] = slopes
-        starts = by.get(STARTS, np.zeros((0, 0)))[:, : self.tow.starts]
-        self.by_starts[stretch][:, : starts.shape[1]] = starts if len(starts) else 0.0
-        self.by_net[stretch] = by['net'] / self.point.net if self.by_net.size else 0.0
-        self.by_examined[stretch] = by['examined']
+        A prediction may have fewer columns of a group than the tow: the others are zero.
+        """
+        widths = {
+            'coefficients': len(point.coefficients),
+            'added_mass': 1,
+            'net': gear.of_net,
+            'examined': sum(len(effect.parameters) for effect in gear.examined),
+            'errors': len(INPUT_ERRORS),
+            STARTS: tow.starts,
+            **{knots.channel: knots.number for knots in tow.inputs.knots},
+        }
+        values = np.full(tow.means.shape, np.nan)
+        by = {name: np.zeros((*tow.means.shape, width)) for name, width in widths.items()}
+        for stretch, found in enumerate(means[: len(tow)]):
+            if found is None:
+                continue
+            values[stretch] = found.values
+            for name, slopes in found.by.items():
+                width = min(slopes.shape[1], widths[name])
+                by[name][stretch, :, :width] = slopes[:, :width]
+        by['net'] /= point.net[: gear.of_net]
+        return cls(tow, point, values, by, left_out)
 
     @property
     def towed(self) -> BoolArray:

@@ -152,11 +152,7 @@ class TowLineariser:
 
     def linearised(self, tow: MovingTow) -> LinearisedTow:
         """Tow as it is linearised so far, of which all has been predicted."""
-        result = LinearisedTow.empty(tow, self._point, self._gear, tuple(self._left_out))
-        for stretch, means in enumerate(self._means[: len(tow)]):
-            if means is not None:
-                result.put(stretch, means)
-        return result
+        return LinearisedTow.of(tow, self._point, self._gear, self._means, tuple(self._left_out))
 
     def _predicted(self, tow: MovingTow, stretch: int) -> Linearisation:
         if stretch in tow.fallen:
