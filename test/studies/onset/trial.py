@@ -167,6 +167,8 @@ def make_trial(task: OnsetTask) -> OnsetTrial:
     if effect:
         acting, size = _beginning(catalogue()[effect], begin, rng)
     trial = OnsetTrial(number, effect, size, begin if effect else None, series=task.series)
+    if effect == 'floats' and record.floats.buoyancy_n == 0.0:
+        return replace(trial, why_not='the gear has no floats')
     raised: list[Finding] = []
     keeper = CourseKeeper()
     spent = fallen_s = 0.0
