@@ -1,9 +1,7 @@
 """Steady states of the default gear: what grows with warp length, and what they promise."""
 
-import re
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -81,26 +79,6 @@ def test_a_symmetric_tow_is_symmetric(table, speed: float) -> None:
                 assert value == pytest.approx(
                     sign * seen[f'starboard_{rest}'], rel=1e-8, abs=1e-9
                 ), name
-
-
-def test_the_five_lines_of_the_readme_run(capsys) -> None:
-    readme = (Path(__file__).parents[2] / 'README.md').read_text(encoding='utf-8')
-    (lines,) = re.findall(r'```python\n(.*?steady_state.*?)```', readme, re.DOTALL)
-    names: dict[str, object] = {}
-    exec(lines, names)
-    spread, depth, tension, net_depth = map(float, capsys.readouterr().out.split())
-    seen = names['seen']
-    assert (spread, depth) == (seen.door_spread, seen.door_depth)
-    assert (tension, net_depth) == (seen.warp_tension, seen.net_depth)
-    for name in (
-        'port_divergence',
-        'port_declination',
-        'vertical_opening',
-        'port_attack',
-        'port_slip',
-        'port_inclination',
-    ):
-        assert np.isfinite(getattr(seen, name)), name
 
 
 def test_no_force_is_left(model: GearModel, steady: SteadyState) -> None:

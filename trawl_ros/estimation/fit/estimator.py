@@ -28,7 +28,6 @@ from trawl_ros.estimation.fit.linearised import (
 )
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.fit.prediction import SteadyPredictor
-from trawl_ros.estimation.fit.standing import standing_starts
 from trawl_ros.estimation.fit.window_search import NO_STEADY_STATE, WindowSearch
 from trawl_ros.estimation.least_squares.descent import DescentOptions, Rest, descend
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -293,6 +292,9 @@ class Estimator:
         """Start where the boards stand as a window shows them, once for each of a few states."""
         if window.state in self._stood_in or len(self._stood_in) >= self.options.standing_states:
             return None
+        # SciPy's optimisers load slowly, and few boards fall.
+        from trawl_ros.estimation.fit.standing import standing_starts
+
         self._stood_in.add(window.state)
         for start in standing_starts(self.predictor, self.prior, window):
             try:
