@@ -48,7 +48,7 @@ class ShortTows:
     tows
         Five steady states each, on two courses.
     log_error_m_s
-        What the log shows too much in all but the first tow, m/s. It is 6 times the
+        What the log shows too much in all but the first tow, m/s. It is more than 6 times the
         smallest error that is detected in 80 % of such tows.
     seed
         Of the errors of the instruments.
