@@ -66,7 +66,7 @@ def test_steady_parts_by_the_class_of_whole_tows_find_the_truth(steady_parts):
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 @pytest.mark.xfail(
-    reason='windows are admitted before the gear is at rest, and have one slow motion for three'
+    strict=True, reason='windows are admitted before the gear is at rest: docs/identification'
 )
 def test_steady_parts_by_the_class_of_whole_tows_tell_what_the_windows_tell(steady_parts, fitted):
     std = np.sqrt(np.diag(steady_parts.covariance))

@@ -14,7 +14,7 @@ from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.pipeline import Identification
 from trawl_ros.estimation.report.figures import drawings
 from trawl_ros.estimation.report.holdout import hold_out
-from trawl_ros.estimation.report.page import report_page, write_report
+from trawl_ros.estimation.report.page import objective_line, report_page, write_report
 from trawl_ros.estimation.report.report import report
 from trawl_ros.estimation.report.residuals import residuals
 from trawl_ros.estimation.report.result import result
@@ -208,6 +208,13 @@ def test_the_spectrum_is_that_of_the_sensitivities(prior, weight):
     np.testing.assert_allclose(np.abs(np.sum(found.directions * directions, axis=1)), 1.0)
     assert found.name(0) == 'c6'
     assert found.name(11) == 'a1'
+
+
+def test_start_values_without_a_steady_state_are_told_in_words():
+    start = {'start': math.nan, 'end': 0.04}
+    told = objective_line(SimpleNamespace(objectives=start))
+    assert 'no steady state' in told
+    assert 'nan' not in told
 
 
 def test_the_verdict_speaks_of_tows_where_there_are_several(tows, one_tow):

@@ -155,11 +155,10 @@ def _rest_rows(trials: Sequence[MotionTrial], series: str) -> list[MeasuredValue
     left = sum(trial.left_out_s for trial in learned) / 60.0
     return [
         MeasuredValue(
-            f'{series}: tows that all of was learned from',
+            f'{series}: tows whose whole course was fitted',
             100.0 * len(learned) / len(trials), '%',
-            note=f'{len(learned)} of {len(trials)}; of the others the windows count in all '
-            'figures, as in trawl identify, which says that the fit did not come to rest; '
-            f'{left:.0f} min left out, beginnings among them',
+            note=f'{len(learned)} of {len(trials)}. The fit of the others did not converge; their '
+            f'windows count, as in `trawl identify`. {left:.0f} min are left out, with beginnings',
         ),
         MeasuredValue(
             f'{series}: time towed over processor time of the fit, median', float(np.median(rates)),

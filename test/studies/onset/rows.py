@@ -50,7 +50,7 @@ def onset_rows(made: Sequence[OnsetTrial]) -> list[MeasuredValue]:
         _quantile('delay, median', delays, 0.5, 5.0, 'delay_median'),
         _quantile('delay, 90 %', delays, 0.9, 15.0, 'delay_90'),
         rate('onsets within 3 min, of those detected', right, least=80.0),
-        rate('the effect is named or among those not told apart, of those detected', named),
+        rate('the right effect is named, or listed as similar, of those detected', named),
         _false('false findings in 230 h', made, at_most(1.0), 'false_230_h'),
         _false(f'false findings in 230 h {standing}', upright, key='false_230_h_upright'),
         *_rarest(made, limit),

@@ -79,9 +79,17 @@ def report_page(report: Report, pictures: Iterable[Picture], advice: Sequence[st
         percent=percent,
         reasons=REASONS,
         law_names=LAWS,
-        objectives=report.objectives,
+        objective=objective_line(report),
         version=__version__,
     )
+
+
+def objective_line(report: Report) -> str:
+    """Objective of eq. 35 at the start values, at the end, and at the truth if it is known."""
+    values = report.objectives
+    start = 'no steady state' if math.isnan(values['start']) else f'{values["start"]:.4f}'
+    truth = f', {values["truth"]:.4f} at the truth' if 'truth' in values else ''
+    return f'Objective of eq. 35: {start} at the start, {values["end"]:.4f} at the end{truth}.'
 
 
 def percent(value: float) -> str:

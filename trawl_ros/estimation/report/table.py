@@ -8,7 +8,7 @@ from rich.table import Table
 
 from trawl_ros.core.display_units import METRIC, DisplayUnits, quantity_of
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
-from trawl_ros.estimation.report.page import percent
+from trawl_ros.estimation.report.page import objective_line, percent
 from trawl_ros.estimation.report.report import Report, coefficient_rows
 from trawl_ros.estimation.report.sensors import SensorComparison, sensor_cells, sensor_headings
 from trawl_ros.estimation.report.verdict import verdict
@@ -59,16 +59,11 @@ def opening_line(report: Report) -> str:
 
 def closing_lines(report: Report) -> list[str]:
     """Closing remarks, one sentence per line."""
-    estimate, objectives = report.estimate, report.objectives
-    truth = f', {objectives["truth"]:.4f} at the truth' if 'truth' in objectives else ''
+    estimate = report.estimate
     judged = verdict(report)
     lines = [*judged.knowledge, *judged.concerns]
     if report.windows:
-        lines.insert(
-            0,
-            f'Objective of eq. 35: {objectives["start"]:.4f} at the start, '
-            f'{objectives["end"]:.4f} at the end{truth}.',
-        )
+        lines.insert(0, objective_line(report))
     if estimate.converged:
         lines.append(f'Converged: {estimate.reason}.')
     if report.rejected:

@@ -113,6 +113,20 @@ def rope_pulls(model: GearModel, state: State, tow: Tow) -> FloatArray:
     return pulls
 
 
+def port_loads(model: GearModel, state: State) -> tuple[FloatArray, FloatArray]:
+    """Return force (N) and moment (N m) (6,) of water and weight on the port board.
+
+    With them goes their change (6, 3) by a rotation of the board, per rad.
+    """
+    by_turn = np.empty((6, 3))
+    for axis in range(3):
+        turn = np.zeros(model.dof)
+        turn[3 * model.nodes + 3 + axis] = 1.0
+        turned = state.moved(stepped(np.zeros(model.dof), turn))
+        by_turn[:, axis] = board_loads(model, turned)[0].imag / STEP
+    return board_loads(model, state)[0].real, by_turn
+
+
 def held_board(model: GearModel, state: State, tow: Tow) -> HeldBoard:
     """Condense the gear to the port board, at a shape with held attitudes."""
     n, rigging = model.nodes, _Rigging(model, state, tow)
@@ -130,17 +144,12 @@ def held_board(model: GearModel, state: State, tow: Tow) -> HeldBoard:
         for move, follow in zip(moves, follows.T, strict=True)
     ]
     give = np.stack([pull[0].imag / STEP for pull in pulled]).reshape(2, 3, 3, 3, 3)
-    by_turn = np.empty((6, 3))
-    for axis in range(3):
-        turn = np.zeros(model.dof)
-        turn[3 * n + 3 + axis] = 1.0
-        turned = state.moved(stepped(np.zeros(model.dof), turn))
-        by_turn[:, axis] = board_loads(model, turned)[0].imag / STEP
+    load, by_turn = port_loads(model, state)
     return HeldBoard(
         arms=model.board.fastening_points @ state.board_rotations[0].T,
         pulls=rigging.forces(still_points, still_nodes)[0][0],
         # From (way, point j, axis b, point i, axis a).
         give=np.transpose(give, (0, 3, 4, 1, 2)),
-        load=board_loads(model, state)[0].real,
+        load=load,
         by_turn=by_turn,
     )

@@ -13,11 +13,9 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import NoSteadyState
-from trawl_ros.model.assembly import board_loads
 from trawl_ros.model.gear_model import GearModel
-from trawl_ros.model.numerics import STEP, stepped
 from trawl_ros.model.state import State
-from trawl_ros.solver.trimming.held_boards import HeldBoard
+from trawl_ros.solver.trimming.held_boards import HeldBoard, port_loads
 from trawl_ros.solver.trimming.held_gear import HeldGear, attitude_at
 
 
@@ -86,7 +84,7 @@ def standing_coefficients(
             held = HeldGear(model, attitude_at(model, place, attack, inclination, pitch), [place])
             board = held.boards(model.board.points)[0]
         except (NoSteadyState, ValueError):
-            # No shape at this attack, or an attitude outside of what a yaw can reach.
+            # The gear has no shape at this attack, or no yaw gives it at this attitude.
             continue
         (gear, _), state = held.acting[0], held.states[0]
         by_coefficients = _moments_by(gear, board, state, known)
@@ -108,13 +106,7 @@ def _balance(
     model: GearModel, board: HeldBoard, state: State, coefficients: FloatArray
 ) -> tuple[FloatArray, float]:
     """Return the moment (3,) left on a held board, N m, and its least stiffness, N m per rad."""
-    gear, by_turn = model.with_coefficients(coefficients), np.empty((6, 3))
-    for axis in range(3):
-        turn = np.zeros(model.dof)
-        turn[3 * model.nodes + 3 + axis] = 1.0
-        turned = state.moved(stepped(np.zeros(model.dof), turn))
-        by_turn[:, axis] = board_loads(gear, turned)[0].imag / STEP
-    load = board_loads(gear, state)[0].real
+    load, by_turn = port_loads(model.with_coefficients(coefficients), state)
     moment, stiffness = replace(board, load=load, by_turn=by_turn).balance(board.arms)
     return moment, float(min(np.linalg.eigvals(own).real.min() for own in stiffness))
 
@@ -122,7 +114,10 @@ def _balance(
 def _moments_by(
     model: GearModel, board: HeldBoard, state: State, known: CoefficientRange
 ) -> FloatArray:
-    """Return the derivatives (3, q) of a board's moment by coefficients that act linearly."""
+    """Return the changes (3, q) of a board's moment, N m, per unit of each coefficient.
+
+    Differences over one std: exact for eq. 14, whose coefficients act linearly.
+    """
     still, _ = _balance(model, board, state, known.start)
     steps = np.diag(known.std)
     moved = [_balance(model, board, state, known.start + step)[0] - still for step in steps]
