@@ -115,15 +115,15 @@ def test_each_half_minute_is_told_and_the_end_is_what_identify_gives(
     answer = graph.call(FINISH)
     assert answer.success, answer.message
     assert 'min of tow' in answer.message
-    graph.until(lambda: len(listener.estimates) > number)
+    graph.until(lambda: len(listener.covariances) > number)
     offline = identify([bag], gear=str(coarse_gear), motion=True)
-    assert offline.motion is not None, offline.motion_refused
-    np.testing.assert_allclose(listener.estimates[-1], offline.motion.fit.values, rtol=0, atol=1e-9)
+    assert offline.chain is not None, offline.chain_refused
+    np.testing.assert_allclose(listener.estimates[-1], offline.estimate.values, rtol=0, atol=1e-9)
     np.testing.assert_allclose(
-        listener.covariances[-1], offline.motion.estimate.covariance, rtol=0, atol=1e-9
+        listener.covariances[-1], offline.estimate.covariance, rtol=0, atol=1e-9
     )
     assert listener.status['all of the tow'].values['whole'] == 'true'
-    assert '"motion"' in (tmp_path / 'out' / 'identification.json').read_text()
+    assert '"chain"' in (tmp_path / 'out' / 'identification.json').read_text()
 
 
 @pytest.mark.slow

@@ -28,6 +28,7 @@ from trawl_ros.records.topics import NAMESPACE
 
 if TYPE_CHECKING:
     from trawl_ros.diagnosis.onset.tows import OnsetsInTow
+    from trawl_ros.estimation.motion.outcome import MotionOutcome
     from trawl_ros.estimation.planning.plan import TrialPlan
     from trawl_ros.estimation.planning.states import Limits
     from trawl_ros.estimation.report.report import Report
@@ -79,9 +80,9 @@ def identify(
     namespace
         Namespace of the topics.
     motion
-        True to fit the whole tows too, including hauling and veering, which takes minutes per hour
-        of tow; meanwhile ``out`` contains the results of the steady windows. False to fit only the
-        windows.
+        True to fit the whole tows, including hauling and veering, which takes a minute per hour of
+        tow; meanwhile ``out`` contains the results of the steady windows. False to fit only their
+        steady parts, which is twice as fast.
     scheduler
         Address of a Dask cluster that reads the bags. It runs code, so it must be trusted.
     force
@@ -92,9 +93,9 @@ def identify(
     Returns
     -------
     Report
-        Report with the ``estimate`` of the steady windows (values and covariance, SI), residuals,
-        and held-out errors. ``motion`` is the fit of the whole tows, or ``motion_refused`` the
-        reason why there is none. Without a steady window, ``estimate`` is that of the whole tows.
+        Report with the ``estimate`` (values and covariance, SI), residuals, and held-out errors.
+        ``chain`` is the fit of the tows, or ``chain_refused`` the reason why the steady windows
+        alone were used.
 
     Raises
     ------
@@ -118,7 +119,7 @@ def identify(
     """
     from trawl_ros.estimation.bag_motion import learn_from_motion, why_windows_alone
     from trawl_ros.estimation.report.page import write_report
-    from trawl_ros.estimation.report.report import report, report_in_motion
+    from trawl_ros.estimation.report.report import report, report_without_windows
     from trawl_ros.scenario.scenario import true_coefficients
 
     if out is not None:
@@ -137,11 +138,11 @@ def identify(
             raise TrawlError('; '.join(reasons))
         on_note('No bag has a steady window: the whole tow is fitted instead.')
         try:
-            learned = learn_from_motion(record, None, unsettled, namespace, on_progress, net=net)
+            whole = learn_from_motion(record, None, unsettled, namespace, on_progress, net=net)
         except TrawlError as error:
             raise TrawlError(f'{"; ".join(reasons)}; and no fit in motion: {error}') from error
         rejections = [recording.rejections for recording in unsettled]
-        result = report_in_motion(learned, rejections, record, known)
+        result = report_without_windows(whole, rejections, record, known)
         if out is not None:
             write_report(result, Path(out))
         return result
@@ -149,21 +150,25 @@ def identify(
     names = estimate_tows(identification, recordings, on_progress)
     if reason := identification.why_not():
         raise TrawlError(f'{", ".join(map(str, bags))}: {reason}')
-    result = report(identification, known, tows=names, gear=record, on_progress=on_progress)
+    learned: MotionOutcome | None = None
+    refused = why_not or ''
+    if not refused:
+        if motion and out is not None:
+            early = report(identification, known, tows=names, gear=record, on_progress=on_progress)
+            write_report(early, Path(out))
+        try:
+            learned = learn_from_motion(
+                record, identification, recordings, namespace, on_progress,
+                net=net, steady=not motion,
+            )  # fmt: skip
+        except TrawlError as reason:
+            refused = str(reason)
+    found = report(
+        identification, known, tows=names, gear=record, on_progress=on_progress, chain=learned
+    )
+    result = replace(found, chain_refused=refused)
     if out is not None:
         write_report(result, Path(out))
-    if motion:
-        try:
-            if why_not:
-                raise TrawlError(why_not)
-            learned = learn_from_motion(
-                record, identification, recordings, namespace, on_progress, net=net
-            )
-            result = replace(result, motion=learned)
-        except TrawlError as reason:
-            result = replace(result, motion_refused=str(reason))
-        if out is not None:
-            write_report(result, Path(out))
     return result
 
 

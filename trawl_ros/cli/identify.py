@@ -21,7 +21,6 @@ from trawl_ros.cli.options import (
     UNITS_OPTION,
 )
 from trawl_ros.core.display_units import METRIC, DisplayUnits
-from trawl_ros.estimation.report.motion import motion_lines, motion_table
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.estimation.report.table import (
     channel_table,
@@ -45,7 +44,7 @@ TABLE_COLUMNS = 100
 @click.option(
     '--no-prior',
     is_flag=True,
-    help='Fit the steady windows without the prior of the gear file, within its bounds.',
+    help='Fit the steady windows alone, without the prior of the gear file, within its bounds.',
 )
 @click.option(
     '--net', is_flag=True, help='Also estimate drag and weight of the net; otherwise those of the '
@@ -53,8 +52,8 @@ TABLE_COLUMNS = 100
 )  # fmt: skip
 @click.option(
     '--motion/--steady', default=True, show_default=True, help='Fit the whole tow, hauling and '
-    'veering included, which takes minutes per hour of tow; or only its steady windows, which '
-    'takes seconds.',
+    'veering included, which takes a minute per hour of tow; or only its steady parts, which is '
+    'twice as fast.',
 )  # fmt: skip
 @UNITS_OPTION
 @NAMESPACE_OPTION
@@ -77,7 +76,7 @@ def command(
 
     The command writes report.html, identification.json and figures. For cross-validation each tow
     is left out in turn and predicted from the others; with a single tow, its steady states are left
-    out. If you stop the command during the fit of the motion, the results of the steady windows
+    out. If you stop the command during the fit of the whole tow, the results of the steady windows
     remain in the folder.
     """
     console = error_console()
@@ -111,8 +110,4 @@ def print_report(report: Report, units: DisplayUnits = METRIC) -> None:
     if report.windows:
         console.print(channel_table(report, units), width=width)
     for line in closing_lines(report):
-        console.print(line)
-    if report.motion is not None and report.windows:
-        console.print(motion_table(report), width=width)
-    for line in motion_lines(report):
         console.print(line, markup=False)

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Fit of the whole tows in bags, from the estimate of their steady windows."""
+"""Fit of the tows in bags: of all of each, or of its steady parts alone."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -35,17 +35,17 @@ STRETCHES = StretchOptions(step_s=3.0, stretch_s=30.0, knot_s=30.0, counter_knot
 START_TOLERANCE = 0.5
 """Part of every std to which the steady parts alone are fitted, where the fit of all begins."""
 
-STAGE = 'towing all of it'
+STAGE = 'towing the model along'
 
 Refused = Callable[[str], None]
 
 
 def why_windows_alone(gear: GearRecord, *, prior: bool) -> str | None:
-    """Reason, in a sentence, why the whole tow cannot be fitted; None if it can."""
+    """Reason, in a sentence, why a tow cannot be fitted as a chain of parts; None if it can."""
     if gear.pair is not None:
-        return f'{gear.name} has no boards, and only their coefficients are learned in motion'
+        return f'{gear.name} has no boards, and only their coefficients are learned so'
     if not prior:
-        return 'in motion the prior of the gear file always takes part'
+        return 'the prior of the gear file takes part in any other fit'
     return None
 
 
@@ -65,8 +65,9 @@ def learn_from_motion(
     on_progress: OnProgress,
     *,
     net: bool = False,
+    steady: bool = False,
 ) -> MotionOutcome:
-    """Fit the whole tows, from the estimate of their steady windows, or from the prior.
+    """Fit tows, from the estimate of their steady windows, or from the prior.
 
     Parameters
     ----------
@@ -82,6 +83,8 @@ def learn_from_motion(
         Called after each stretch that was towed, with the time (s) towed so far.
     net
         True if drag and weight of the net are estimated along.
+    steady
+        True if their steady parts alone are fitted.
 
     Raises
     ------
@@ -93,7 +96,9 @@ def learn_from_motion(
     tows, numbers, refused = moving_tows(gear, recordings, namespace, on_progress)
     if not tows:
         raise TrawlError('; '.join(refused))
-    return fit_tows(gear, identification, tows, numbers, refused, on_progress, net=net)
+    return fit_tows(
+        gear, identification, tows, numbers, refused, on_progress, net=net, steady=steady
+    )
 
 
 def fit_tows(
@@ -105,12 +110,13 @@ def fit_tows(
     on_progress: OnProgress = ignore,
     *,
     net: bool = False,
+    steady: bool = False,
 ) -> MotionOutcome:
-    """Fit tows in motion.
+    """Fit tows as chains of parts.
 
     Parameters
     ----------
-    gear, identification, on_progress, net
+    gear, identification, on_progress, net, steady
         As of `learn_from_motion`.
     tows, numbers, refused
         As `moving_tows` gives them.
@@ -141,23 +147,26 @@ def fit_tows(
         detail = f'step {iteration}, tow {tow + 1}{of}, minute {minute:.0f}'
         on_progress(WorkProgress(STAGE, done, None, 's', detail))
 
-    rough = replace(options, tolerance=START_TOLERANCE)
-    steady = fit_steady(towed, tows, prior, rough, start, show)
-    if steady is not None and steady.converged and steady.readings:
-        start = list(steady.parameters)
-    fit = fit_motion(towed, tows, prior, options, start, show)
-    if not fit.readings:
+    own = options if steady else replace(options, tolerance=START_TOLERANCE)
+    fit = fit_steady(towed, tows, prior, own, start, show)
+    if not steady:
+        if fit is not None and fit.converged and fit.readings:
+            start = list(fit.parameters)
+        fit = fit_motion(towed, tows, prior, options, start, show)
+    if fit is None or not fit.readings:
         raise TrawlError('the model cannot be towed along any stretch of the tows')
     if identification is not None and not fit.converged:
         # Intervals of a place that is not at rest mean nothing, and the windows have theirs.
-        raise TrawlError(f'the fit of the whole tow did not converge: {fit.reason}')
+        raise TrawlError(f'the fit of the {"steady parts" if steady else "whole tow"} did not '
+                         f'converge: {fit.reason}')  # fmt: skip
+    outcome = MotionOutcome(fit, prior, tuple(numbers), tuple(refused), stack(()))
     if identification is None:
-        return MotionOutcome(fit, prior, None, tuple(refused), stack(()))
+        return outcome
     estimator = identification.estimator
     held_out = hold_out_states(
         fit, prior, estimator.windows, numbers, estimator.predictions, options
     )
-    return MotionOutcome(fit, prior, estimate, tuple(refused), held_out)
+    return replace(outcome, held_out=held_out)
 
 
 def moving_tows(

@@ -214,6 +214,7 @@ class LiveMotion:
         if found is None:
             self.why_not = self.why_not or 'the model is towed along the tow so far'
             return None
-        outcome = MotionOutcome(found.fit, self._prior, windows, tuple(refused), stack(()))
+        numbers = ((),) * len(tows)
+        outcome = MotionOutcome(found.fit, self._prior, numbers, tuple(refused), stack(()))
         stamp = max(tow.start_ns + round(len(tow) * tow.stretch_s * SECOND) for tow in tows)
         return MotionUpdate(stamp, outcome, found.moved, found.towings)

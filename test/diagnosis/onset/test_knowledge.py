@@ -37,7 +37,7 @@ def written(tmp_path):
 
 def test_errors_are_as_found_and_never_less_than_stated(written):
     record = FOUND.record() | {'log': 3.0}
-    known = of_identification(written(noise_densities={'speed': 0.07}, motion={'sizes': record}))
+    known = of_identification(written(noise_densities={'speed': 0.07}, chain={'sizes': record}))
     assert known.densities == {'speed': 0.07}
     assert known.sizes.log == 3.0
     # A drift of 0.05 and 0.4 of what changes with states are less than stated.
@@ -45,7 +45,7 @@ def test_errors_are_as_found_and_never_less_than_stated(written):
     assert known.sizes.of_group(PLACE + 1).tolist() == STATED.of_group(PLACE + 1).tolist()
 
 
-@pytest.mark.parametrize('more', [{}, {'motion': None}, {'motion': {'refused': 'not at sea'}}])
+@pytest.mark.parametrize('more', [{}, {'chain': None}, {'chain': {'refused': 'not at sea'}}])
 def test_a_file_that_does_not_tell_errors_has_them_as_stated(written, more):
     known = of_identification(written(**more))
     assert known.densities == {}
@@ -57,9 +57,9 @@ def test_a_file_that_does_not_tell_errors_has_them_as_stated(written, more):
     [
         {'noise_densities': {'speed': float('nan')}},
         {'noise_densities': ['speed']},
-        {'motion': {'sizes': {'log': float('inf')}}},
-        {'motion': {'sizes': {'noise': {'tension': 'much'}}}},
-        {'motion': {'sizes': {'noise': {'tension': -1.0}}}},
+        {'chain': {'sizes': {'log': float('inf')}}},
+        {'chain': {'sizes': {'noise': {'tension': 'much'}}}},
+        {'chain': {'sizes': {'noise': {'tension': -1.0}}}},
         {'noise_densities': {'speed': 1e300}},
         {'noise_densities': {'speed': 10**400}},
         {'covariance': [[float('inf')] * 12] * 12},

@@ -15,7 +15,7 @@ from trawl_ros.estimation.fit.error_terms import (
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.estimator_options import EstimatorOptions
 from trawl_ros.estimation.fit.fit import Fit
-from trawl_ros.estimation.fit.fitted_estimate import tow_biases
+from trawl_ros.estimation.fit.fitted_estimate import biases_of_fit
 from trawl_ros.estimation.fit.linearised import linearise
 from trawl_ros.estimation.fit.nuisance import MAX_ELIMINATIONS, WEIGHT_TOLERANCE, reweighted
 from trawl_ros.records.channels import INPUTS
@@ -138,7 +138,7 @@ def test_what_an_instrument_reads_too_high_is_found_per_tow(sea, model, prior):
             window.means['net_depth'] += 0.8
         estimator.add(window)
     estimator.finish()
-    biases = {(bias.tow, bias.channel): bias for bias in tow_biases(estimator._fit)}
+    biases = {(bias.tow, bias.channel): bias for bias in biases_of_fit(estimator._fit)}
     known = {term.channel for term in TERMS} & {*INPUTS, *sea.OBSERVABLES}
     assert {channel for _, channel in biases} == known
     assert len(biases) == 2 * len(known)

@@ -76,7 +76,7 @@ def of_identification(path: Path, names: Sequence[str] = COEFFICIENTS) -> Knowle
             raise ValueError(f'covariance: found a value that is not below {MAX_VARIANCE:g}')
         np.linalg.cholesky(covariance)
         densities = _finite(known.get('noise_densities', {}))
-        sizes_found = (known.get('motion') or {}).get('sizes', {})
+        sizes_found = (known.get('chain') or {}).get('sizes', {})
         sizes = _sizes(sizes_found, sizes_found.get('log', STATED.log))
     except (ValueError, KeyError, TypeError, AttributeError, np.linalg.LinAlgError) as reason:
         raise TrawlError(

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Estimate of a fit, with calibration errors of its tows, and innovations of a new window."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS, TERMS, model_errors
+from trawl_ros.estimation.fit.error_terms import GROUP_OF, GROUPS, TERMS, ChannelError, model_errors
 from trawl_ros.estimation.fit.estimate import (
     Estimate,
     Innovation,
@@ -66,7 +67,7 @@ def posterior_estimate(
         condition_number=fit.posterior.condition_number,
         undetermined=undetermined(fit.posterior, fit.prior.names),
         noise_scales=dict(zip(GROUPS, fit.scales, strict=True)),
-        tow_biases=tow_biases(fit),
+        tow_biases=biases_of_fit(fit),
         net=net_factors(fit),
         degrees_of_freedom=fit.degrees_of_freedom + fit.options.stated_noise_readings,
         confidence=fit.options.confidence,
@@ -79,31 +80,61 @@ def posterior_estimate(
     )
 
 
-def tow_biases(fit: Fit) -> tuple[TowBias, ...]:
-    """Return the calibration errors by tow and channel, inputs included."""
-    share = fit.options.tow_share
+def tow_biases(
+    tow: int,
+    terms: Sequence[ChannelError],
+    values: FloatArray,
+    root: FloatArray,
+    means: Mapping[str, float],
+) -> list[TowBias]:
+    """Return the calibration errors of a tow by channel.
+
+    Parameters
+    ----------
+    tow
+        Its number.
+    terms
+        The p errors of calibration.
+    values : (p,) array
+        Their estimates, in prior std.
+    root : (p, m) array
+        Root of their posterior covariance.
+    means
+        Mean of each channel that the tow has.
+    """
     biases = []
-    roots = tow_roots(fit.elimination, fit.posterior.root)
-    for tow, every in zip(fit.elimination.tows, roots, strict=True):
-        root = every[-len(tow.calibration) :]
-        windows = [fit.windows[row].window for row in tow.errors.rows]
-        for name in dict.fromkeys(term.channel for term in TERMS):
-            means = [window.means[name] for window in windows if name in window.means]
-            if not means:
-                continue
-            mean = float(np.mean(means))
-            size = np.array([share * (term.channel == name) * term.size(mean) for term in TERMS])
-            biases.append(
-                TowBias(
-                    tow=windows[0].tow,
-                    channel=name,
-                    unit=CHANNELS[name].unit,
-                    value=float(size @ tow.calibration),
-                    std=float(np.linalg.norm(size @ root)),
-                    known=float(np.linalg.norm(size)),
-                )
+    for name in dict.fromkeys(term.channel for term in terms if term.channel in means):
+        mean = float(means[name])
+        size = np.array([(term.channel == name) * term.size(mean) for term in terms])
+        biases.append(
+            TowBias(
+                tow=tow,
+                channel=name,
+                unit=CHANNELS[name].unit,
+                value=float(size @ values),
+                std=float(np.linalg.norm(size @ root)),
+                known=float(np.linalg.norm(size)),
             )
-    return tuple(biases)
+        )
+    return biases
+
+
+def biases_of_fit(fit: Fit) -> tuple[TowBias, ...]:
+    """Return the calibration errors by tow and channel, inputs included."""
+    share, found = fit.options.tow_share, []
+    terms = [replace(term, std=share * term.std) for term in TERMS]
+    for part, every in zip(
+        fit.elimination.tows, tow_roots(fit.elimination, fit.posterior.root), strict=True
+    ):
+        windows = [fit.windows[row].window for row in part.errors.rows]
+        channels = dict.fromkeys(name for window in windows for name in window.means)
+        means = {
+            name: float(np.mean([w.means[name] for w in windows if name in w.means]))
+            for name in channels
+        }
+        root = every[-len(terms) :]
+        found += tow_biases(windows[0].tow, terms, part.calibration, root, means)
+    return tuple(found)
 
 
 def net_factors(fit: Fit) -> tuple[NetFactor, ...]:

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Outcome of fitting a whole tow, compared with the estimate of its steady windows."""
+"""Outcome of fitting tows as chains of parts: the estimate, and what fits badly."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,10 +10,21 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.estimation.fit.estimate import Estimate
+from trawl_ros.estimation.fit.error_terms import GROUPS, channel_errors
+from trawl_ros.estimation.fit.estimate import (
+    Estimate,
+    Posterior,
+    TowBias,
+    posterior_of,
+    undetermined,
+)
+from trawl_ros.estimation.fit.fitted_estimate import tow_biases
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.least_squares.information import Information, extended_root, joined
 from trawl_ros.estimation.motion.fit_records import MotionFit
+from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.towing.records import LeftOut
+from trawl_ros.records.channels import INPUTS
 
 POOR_MISFIT = 2.0
 """Root mean square of a stretch's whitened residuals from which it fits badly."""
@@ -33,14 +44,16 @@ class PoorStretch:
 
 @dataclass(frozen=True)
 class MotionOutcome:
-    """Outcome of a fit of whole tows.
+    """Outcome of a fit of tows as chains of parts.
 
     Attributes
     ----------
     fit
         The fit.
-    prior, windows
-        The prior, and the estimate of the steady windows; None where there is no window.
+    prior
+        Of the coefficients.
+    numbers
+        Of each tow in the fit, the numbers of its tows among the windows; empty without windows.
     refused
         A sentence for each bag, or part of one, that is not in the fit.
     held_out : (n, 4) array
@@ -50,37 +63,72 @@ class MotionOutcome:
 
     fit: MotionFit
     prior: ParameterVector
-    windows: Estimate | None
+    numbers: tuple[tuple[int, ...], ...]
     refused: tuple[str, ...]
     held_out: FloatArray
 
+    @property
+    def steady_only(self) -> bool:
+        """True if the steady parts alone were fitted."""
+        return all(linear.tow.steady_only for linear in self.fit.linear)
+
+    @property
+    def what(self) -> str:
+        """What was fitted, in words."""
+        return 'the steady parts' if self.steady_only else 'the whole tow'
+
+    @cached_property
+    def posterior(self) -> Posterior:
+        """Posterior of the coefficients, all other parameters integrated out."""
+        matrix = self.fit.matrix
+        every = Information(matrix, np.zeros(len(matrix)), 0.0, 0.0)
+        own = joined([every], [np.ones(len(matrix))], len(self.prior))
+        return posterior_of(own.matrix, self.prior.std, 1.0)
+
     @cached_property
     def estimate(self) -> Estimate:
-        """Estimate by the whole tow."""
+        """Estimate of the coefficients."""
         fit = self.fit
         ends = [linear.tow.start_ns + int(1e9 * linear.tow.middles[-1]) for linear in fit.linear]
         return Estimate(
-            self.prior, 1, max(ends), 0, fit.values, fit.covariance,
-            fit.cost, fit.converged, fit.reason, net=fit.net,
+            prior=self.prior,
+            revision=1,
+            stamp=max(ends),
+            windows=0,
+            values=fit.values,
+            covariance=fit.covariance,
+            cost=fit.cost,
+            converged=fit.converged,
+            reason=fit.reason,
+            condition_number=self.posterior.condition_number,
+            undetermined=undetermined(self.posterior, self.prior.names),
+            noise_scales=dict(zip(GROUPS, fit.sizes.noise, strict=True)),
+            net=fit.net,
+        )
+
+    @cached_property
+    def tow_biases(self) -> tuple[TowBias, ...]:
+        """Calibration errors of each tow's instruments, those of its inputs included."""
+        fit, found = self.fit, []
+        shared = extended_root(fit.matrix, np.ones(len(fit.matrix)), self.posterior.root)
+        tows = zip(
+            fit.linear, fit.layouts, fit.parameters, fit.data.information(fit.sizes),
+            fit.data.precisions(fit.sizes.log), strict=True,
         )  # fmt: skip
-
-    @property
-    def ratio(self) -> FloatArray:
-        """Ratio (q,) of the std of the whole tow to that of its windows or of the prior."""
-        before = self.prior.std if self.windows is None else self.windows.std
-        return np.asarray(self.estimate.std / before, np.float64)
-
-    @property
-    def geometric_means(self) -> dict[str, float]:
-        """Geometric means over the coefficients of posterior over prior std.
-
-        They are those of the ``windows`` and the ``whole``, and their ``ratio``; 1 for no windows.
-        """
-        return {
-            'windows': 1.0 if self.windows is None else _mean(self.windows.std / self.prior.std),
-            'whole': _mean(self.estimate.std / self.prior.std),
-            'ratio': _mean(self.ratio),
-        }
+        for number, (linear, layout, z, known, precision) in enumerate(tows):
+            root = extended_root(known.matrix, precision, shared)
+            means = dict(
+                zip(linear.tow.channels, np.nanmean(linear.tow.means, axis=0), strict=True)
+            )
+            means |= dict(zip(INPUTS, linear.tow.inputs.values.mean(axis=0), strict=True))
+            tow = min(self.numbers[number], default=number)
+            for part, terms in (
+                ('calibration', channel_errors(layout.channels)),
+                ('errors', INPUT_ERRORS),
+            ):
+                own = layout.slices[part]
+                found += tow_biases(tow, terms, z[own], root[own], means)
+        return tuple(found)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -156,7 +204,3 @@ class MotionOutcome:
                 place = rows.rows.stretches, rows.rows.channels
                 white[place] = solve_triangular(root, away, lower=True)
         return white
-
-
-def _mean(values: FloatArray) -> float:
-    return float(np.exp(np.mean(np.log(values))))

@@ -9,14 +9,12 @@ from trawl_ros.estimation.report.figures_coefficients import (
 )
 from trawl_ros.estimation.report.figures_course import convergence_figure, objective_figure
 from trawl_ros.estimation.report.figures_fit import channels_figure, residuals_figure
-from trawl_ros.estimation.report.figures_motion import motion_figure
 from trawl_ros.estimation.report.figures_tows import held_out_figure, tow_biases_figure
 from trawl_ros.estimation.report.report import Report
 from trawl_ros.report.pictures import Drawing
 
 FIT = 'How well it fits'
 KNOWN = 'What the data know'
-IN_MOTION = 'What motion adds'
 COURSE = 'How it got there'
 
 
@@ -27,7 +25,7 @@ def drawings(report: Report) -> list[Drawing]:
     if report.paired:
         return [*_fit(report), _objective(report)]
     course = [_objective(report), _convergence(report)]
-    return [*_fit(report), *_known(report), *_motion(report), *course]
+    return [*_fit(report), *_known(report), *course]
 
 
 def _fit(report: Report) -> list[Drawing]:
@@ -85,19 +83,6 @@ def _known(report: Report) -> list[Drawing]:
             )
         )  # fmt: skip
     return drawn
-
-
-def _motion(report: Report) -> list[Drawing]:
-    if report.motion is None:
-        return []
-    return [
-        Drawing(
-            'motion',
-            'Each coefficient from steady windows and from the whole tow, in standard deviations '
-            'of the prior; below, their own standard deviations.',
-            motion_figure(report.motion, report.truth), IN_MOTION,
-        )
-    ]  # fmt: skip
 
 
 def _objective(report: Report) -> Drawing:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hold-out errors: prediction of whole tows, or whole steady states, left out of the fit."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.estimator import Estimator
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, stack
 from trawl_ros.estimation.motion.holdout import folds_of
+from trawl_ros.estimation.windows.records import SteadyWindow
 
 NEAR_ENOUGH = 0.1
 """Step, in std, at which fits for hold-out have converged."""
@@ -42,6 +44,12 @@ class HeldOut:
     predicted: FloatArray = field(default_factory=lambda: stack(()))
 
 
+def held_out_by(windows: Sequence[SteadyWindow], predicted: FloatArray) -> HeldOut:
+    """Hold-out by tows where there are several, else by states, with predictions (n, 4)."""
+    by = 'tow' if len({window.tow for window in windows}) > 1 else 'state'
+    return HeldOut(by, len({getattr(window, by) for window in windows}), predicted)
+
+
 def hold_out(
     estimator: Estimator,
     folds: int = 5,
@@ -69,11 +77,9 @@ def hold_out(
     windows = estimator.windows
     predicted = np.full((len(windows), len(PAPER_CHANNELS)), np.nan)
     states = {window.state for window in windows}
-    by = 'tow' if len({window.tow for window in windows}) > 1 else 'state'
-    groups = len({getattr(window, by) for window in windows})
     folds_of_states = folds_of(windows, folds, seed)
-    if groups < 2:
-        return HeldOut(by, groups, predicted)
+    if len(states) < 2:
+        return held_out_by(windows, predicted)
     options = replace(
         estimator.options,
         relinearise_final=PREDICTED,
@@ -93,4 +99,4 @@ def hold_out(
         unseen = [windows[i] for i in rows]
         inputs = rest.inputs_of(unseen)
         predicted[rows] = rest.predictions(rest.coefficients, unseen, inputs=inputs)
-    return HeldOut(by, groups, predicted)
+    return held_out_by(windows, predicted)

@@ -10,8 +10,8 @@ from trawl_ros.core.files import made_folder, write_json, write_text
 from trawl_ros.core.version import __version__
 from trawl_ros.estimation.fit.laws import LAWS
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.report.chain import chain_lines
 from trawl_ros.estimation.report.figures import drawings
-from trawl_ros.estimation.report.motion import motion_lines, motion_rows
 from trawl_ros.estimation.report.report import Report, coefficient_rows
 from trawl_ros.estimation.report.result import result
 from trawl_ros.estimation.report.sensors import sensor_cells, sensor_headings
@@ -68,8 +68,7 @@ def report_page(report: Report, pictures: Iterable[Picture], advice: Sequence[st
         verdict=verdict(report),
         advice=advice,
         coefficients=coefficient_rows(report),
-        motion=motion_rows(report.motion, report.truth) if report.motion else [],
-        motion_lines=motion_lines(report),
+        chain_lines=chain_lines(report),
         sections=by_section(pictures),
         sensors=[sensor_cells(row) for row in report.sensors],
         sensor_headings=sensor_headings(report.sensors),

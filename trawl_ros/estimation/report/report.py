@@ -3,7 +3,7 @@
 """Report of an identification, computed once for JSON, figures and page."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from trawl_ros.estimation.fit.objective import mnae, objective, paper_values, st
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
-from trawl_ros.estimation.report.holdout import HeldOut, hold_out
+from trawl_ros.estimation.report.holdout import HeldOut, held_out_by, hold_out
 from trawl_ros.estimation.report.residuals import (
     ChannelResiduals,
     innovations,
@@ -74,7 +74,7 @@ class Report:
     Attributes
     ----------
     estimate
-        End of the fit.
+        Estimate of the coefficients.
     prior_weight
         1 where the prior was used, 0 where the data alone decided.
     truth : (q,) array or None
@@ -106,10 +106,11 @@ class Report:
         Quantities of this law; None where the gear is not at hand, or has no boards.
     paired
         True for a gear without boards, whose coefficients do nothing.
-    motion
-        Outcome of fitting the whole tows, if that was asked for and possible.
-    motion_refused
-        Reason for which it cannot, in a sentence without its full stop; '' without one.
+    chain
+        Fit of the tows as chains of parts, of which the estimate is; None where the windows' own
+        fit decides.
+    chain_refused
+        Reason for which it decides, in a sentence without its full stop; '' without one.
     sensors
         Each sensor, with its predictions by the gear file, the start and the estimate.
 
@@ -140,14 +141,26 @@ class Report:
     history: tuple[Progress, ...] = ()
     laws: KnownLaws | None = None
     paired: bool = False
-    motion: MotionOutcome | None = None
-    motion_refused: str = ''
+    chain: MotionOutcome | None = None
+    chain_refused: str = ''
     sensors: tuple[SensorComparison, ...] = ()
 
     @property
     def prior(self) -> ParameterVector:
         """Prior of the coefficients."""
         return self.estimate.prior
+
+    @property
+    def source(self) -> str:
+        """Data of which the estimate is, in words."""
+        if self.chain is not None:
+            return f'{self.chain.what}, {self.chain.duration_s / 60.0:.0f} min'
+        return f'{len(self.windows)} steady windows'
+
+    @property
+    def misfit(self) -> float:
+        """Size of the residuals over that of all errors known of."""
+        return self.estimate.birge_ratio if self.chain is None else self.chain.fit.misfit
 
     @property
     def spectrum(self) -> Spectrum:
@@ -210,6 +223,7 @@ def report(
     tows: Sequence[str] = (),
     gear: GearRecord | None = None,
     on_progress: OnProgress = ignore,
+    chain: MotionOutcome | None = None,
 ) -> Report:
     """Compute the report of a finished identification.
 
@@ -227,6 +241,9 @@ def report(
         Gear of the boards, for their laws at the angles they work at.
     on_progress
         Called before each fit of the hold-out.
+    chain
+        Fit of the same tows as chains of parts, whose estimate is reported; None for that of the
+        windows' own fit.
 
     Raises
     ------
@@ -239,7 +256,11 @@ def report(
     windows = estimator.windows
     number = 1 + max(window.tow for window in windows)
     own = [linear.state for linear in estimator.fit.windows]
-    at_end = estimator.solve(estimate.values, net=estimator.fit.net, own=own)
+    net = estimator.fit.net
+    if chain is not None:
+        estimate = replace(chain.estimate, windows=len(windows), tow_biases=chain.tow_biases)
+        net = None if net is None else np.array([factor.value for factor in estimate.net])
+    at_end = estimator.solve(estimate.values, net=net, own=own)
     at_start = estimator.solve(estimator.prior.start)
     cases, law = {'start': at_start, 'refitted': at_end}, None
     if gear is not None and gear.pair is None:
@@ -259,7 +280,9 @@ def report(
         measured=stack([paper_values(window.means) for window in windows]),
         at_start=paper_rows(at_start),
         at_end=paper_rows(at_end),
-        held_out=hold_out(estimator, folds, on_progress=on_progress),
+        held_out=hold_out(estimator, folds, on_progress=on_progress)
+        if chain is None
+        else held_out_by(windows, chain.held_out),
         at_truth=None if truth is None else paper_rows(estimator.solve(truth)),
         residuals=residuals(at_end),
         innovations=innovations(identification.course),
@@ -269,21 +292,22 @@ def report(
         laws=None if law is None else _laws(law, at_end, estimate),
         paired=gear is not None and gear.pair is not None,
         sensors=compare_sensors(cases),
+        chain=chain,
     )
 
 
-def report_in_motion(
-    motion: MotionOutcome,
+def report_without_windows(
+    chain: MotionOutcome,
     rejections: Sequence[Rejections],
     gear: GearRecord,
     truth: FloatArray | None = None,
 ) -> Report:
-    """Compute the report of tows that were learned from in motion alone.
+    """Compute the report of tows without a steady window.
 
     Parameters
     ----------
-    motion
-        Outcome of their fit.
+    chain
+        Fit of the tows as chains of parts.
     rejections
         Of the recordings, none of which has a window.
     gear
@@ -296,13 +320,13 @@ def report_in_motion(
         every.counts.update(rejected.counts)
         every.sentences.update(rejected.sentences)
     return Report(
-        estimate=motion.estimate,
-        tows=motion.names,
+        estimate=replace(chain.estimate, tow_biases=chain.tow_biases),
+        tows=chain.names,
         rejected={key: every.counts[key] for key in REASONS if every.counts[key]},
         found={key: every.sentences[key] for key in REASONS if key in every.sentences},
         truth=truth,
         law=build_board(gear).law,
-        motion=motion,
+        chain=chain,
     )
 
 

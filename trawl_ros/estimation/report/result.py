@@ -7,7 +7,7 @@ import math
 from trawl_ros.core.files import finite
 from trawl_ros.estimation.fit.laws import QUANTITIES
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
-from trawl_ros.estimation.report.motion import motion_result
+from trawl_ros.estimation.report.chain import chain_result
 from trawl_ros.estimation.report.net import net_result
 from trawl_ros.estimation.report.report import Report, coefficient_rows
 from trawl_ros.estimation.report.residuals import ChannelResiduals
@@ -23,7 +23,7 @@ BIAS_KEYS = 'unit', 'value', 'std', 'known'
 def result(report: Report) -> dict[str, object]:
     """Build the content of ``identification.json``; numbers that do not exist are None."""
     estimate, errors = report.estimate, report.errors
-    asked = report.motion is not None or report.motion_refused
+    asked = report.chain is not None or report.chain_refused
     return {
         'windows': estimate.windows,
         'rejected': dict(report.rejected),
@@ -56,7 +56,7 @@ def result(report: Report) -> dict[str, object]:
             }
             for combination in estimate.undetermined
         ],
-        'misfit': estimate.birge_ratio,
+        'misfit': report.misfit,
         'noise_scales': dict(estimate.noise_scales),
         'noise_densities': dict(noise_densities(report.windows)),
         'net': net_result(report.estimate.net),
@@ -69,7 +69,7 @@ def result(report: Report) -> dict[str, object]:
         'innovations': {row.channel: _statistics(row) for row in report.innovations},
         'laws': _laws(report),
         'rejected_last': dict(report.found),
-        **({'motion': motion_result(report)} if asked else {}),
+        **({'chain': chain_result(report)} if asked else {}),
     }
 
 

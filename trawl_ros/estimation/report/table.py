@@ -8,6 +8,7 @@ from rich.table import Table
 
 from trawl_ros.core.display_units import METRIC, DisplayUnits, quantity_of
 from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.estimation.report.chain import chain_lines
 from trawl_ros.estimation.report.page import objective_line, percent
 from trawl_ros.estimation.report.report import Report, coefficient_rows
 from trawl_ros.estimation.report.sensors import SensorComparison, sensor_cells, sensor_headings
@@ -17,9 +18,8 @@ from trawl_ros.estimation.report.verdict import verdict
 def coefficient_table(report: Report) -> Table:
     """Start, value, 95 % interval, truth where known, and whether the data determine it."""
     tows = len(set(report.tow_of.tolist()))
-    of = '' if tows == 1 else f' of {tows} tows'
-    source = f'{report.estimate.windows} steady windows{of}' if tows else 'the whole tow'
-    table = Table(title=f'Board coefficients from {source}')
+    of = f', {tows} tows' if tows > 1 else ''
+    table = Table(title=f'Board coefficients from {report.source}{of}')
     table.add_column('', style='bold')
     headings = ['start', 'value', 'low', 'high']
     if report.truth is not None:
@@ -61,7 +61,7 @@ def closing_lines(report: Report) -> list[str]:
     """Closing remarks, one sentence per line."""
     estimate = report.estimate
     judged = verdict(report)
-    lines = [*judged.knowledge, *judged.concerns]
+    lines = [*judged.knowledge, *judged.concerns, *chain_lines(report)]
     if report.windows:
         lines.insert(0, objective_line(report))
     if estimate.converged:

@@ -63,10 +63,10 @@ def verdict(report: Report) -> Verdict:
 
 def _fit(report: Report, held: FloatArray, paper: FloatArray) -> str:
     out = report.held_out
-    if not report.windows and report.motion is not None:
+    if not report.windows:
         return (
-            'No steady window was found: the whole tow was fitted instead, '
-            f"{report.motion.duration_s / 60.0:.0f} min of it, from the gear file's prior."
+            f'No steady window was found, so nothing could be left out: {report.source}, were '
+            "fitted from the gear file's prior."
         )
     if not np.all(np.isfinite(held)):
         return (
@@ -125,10 +125,11 @@ def _concerns(report: Report) -> tuple[str, ...]:
     if estimate.active_bounds:
         bounds = '; '.join(estimate.active_bounds)
         concerns.append(f'On a bound, so that its interval is worth little: {bounds}.')
-    if estimate.birge_ratio > NOTABLE_MISFIT:
+    if report.misfit > NOTABLE_MISFIT:
+        widened = 'are widened as much' if report.chain is None else 'may be too narrow'
         concerns.append(
-            'The readings differ from the model by more than all known errors explain; intervals '
-            f'are widened {estimate.birge_ratio:.1f} times for it.'
+            f'The readings differ from the model by {report.misfit:.1f} times what all known '
+            f'errors explain; intervals {widened}.'
         )
     if beyond := [_ratio(row) for row in report.residuals if row.test_ratio > LARGEST_TEST_RATIO]:
         concerns.append(

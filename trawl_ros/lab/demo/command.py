@@ -15,6 +15,7 @@ from trawl_ros.api import trials
 from trawl_ros.bags.reader import summarise
 from trawl_ros.bags.sentence_log import write_sentence_log
 from trawl_ros.cli.console.progress import ProgressDisplay, error_console
+from trawl_ros.cli.identify import print_report
 from trawl_ros.cli.options import FOLDER, SCENARIO
 from trawl_ros.core.errors import RosMissing, TrawlError
 from trawl_ros.core.files import write_figure
@@ -27,8 +28,6 @@ from trawl_ros.lab.demo.short_tows import diagnose_short_tows
 from trawl_ros.lab.demo.summary import (
     finding_lines,
     load_result,
-    print_motion,
-    print_result,
     refitted_line,
 )
 from trawl_ros.lab.running.chain import start_chain, stop_chain
@@ -159,15 +158,14 @@ def command(out: Path, scenario: Path | None, full: bool, diagnosis: bool) -> No
             name: {**values, 'truth': truth[name]}
             for name, values in result['coefficients'].items()
         },
-        'motion': result.get('motion'),
+        'chain': result.get('chain'),
         'bag': folder.bag.name,
         'figures': figures,
     }
     folder.write_summary(summary)
     _require_all(traffic, folder)
     if learned is not None:
-        print_result(result, truth)
-        print_motion(learned, loaded.duration_s)
+        print_report(learned)
         _close(loaded, folder, traffic, tow_s, time.monotonic() - began)
         if diagnosis:
             steps.say('four more tows, their diagnosis and the repaired gear', 180)
@@ -278,7 +276,7 @@ def _replay(
 def _learn(scenario: Scenario, folder: DemoFolder, console: Console) -> Report:
     """Fit the boards to the whole tow.
 
-    The report replaces that of the replay: it has the same windows, and shows both estimates.
+    The report replaces that of the replay, whose windows it has.
     """
     with ProgressDisplay(console) as display:
         found = trials.identify(

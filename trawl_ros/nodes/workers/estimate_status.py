@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Diagnostic statuses of an identification, for ``identification/status``."""
 
+import numpy as np
+
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.fit.estimate import Innovation as Innovations
 from trawl_ros.estimation.fit.laws import QUANTITIES
@@ -141,7 +143,7 @@ def motion_status(motion: MotionKnowledge, windows: Estimate | None) -> Status:
             'misfit': f'{outcome.fit.misfit:.4g}',
             'moved': f'{motion.moved:.3g}',
             'towings': str(motion.towings),
-            'std over prior': f'{outcome.geometric_means["whole"]:.4f}',
+            'std over prior': f'{_std_over_prior(outcome.estimate):.4f}',
         }
         for i, coefficient in enumerate(outcome.prior.names):
             values[coefficient] = f'{outcome.fit.values[i]:.9g}'
@@ -153,6 +155,11 @@ def motion_status(motion: MotionKnowledge, windows: Estimate | None) -> Status:
         values['lost'] = motion.lost
     known = motion_diagnosis(motion)
     return Status('identification: all of the tow', known.level, known.message, values)
+
+
+def _std_over_prior(estimate: Estimate) -> float:
+    """Geometric mean over the coefficients."""
+    return float(np.exp(np.mean(np.log(estimate.std / estimate.prior.std))))
 
 
 def motion_diagnosis(motion: MotionKnowledge) -> Status:

@@ -4,6 +4,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.errors import TrawlError
@@ -11,6 +12,9 @@ from trawl_ros.estimation.pipeline import NO_WINDOW, Identification
 from trawl_ros.estimation.report.report import Report, report
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.nodes.workers.motion_learner import MotionLearner
+
+if TYPE_CHECKING:
+    from trawl_ros.estimation.motion.outcome import MotionOutcome
 
 
 class ReportWriter:
@@ -51,26 +55,32 @@ class ReportWriter:
         if estimate is None:
             return self._without_windows(identification)
         refused = '' if self._motion is None else self._motion.refusal()
-        written = None
-        if self._folder is not None:
-            written = report(identification, self._truth, gear=self._gear)
-            self._write(replace(written, motion_refused=refused))
+        outcome = None
+        if self._motion is None or refused:
+            self._write_of(identification, refused)
+        else:
+            self._write_of(identification)
+            try:
+                outcome = self._motion.finish(identification)
+            except TrawlError as reason:
+                refused = str(reason)
+            self._write_of(identification, refused, outcome)
         ends = f'{estimate.windows} windows used; {estimate.reason}'
         if self._folder is not None:
             ends = f'{self._folder}: identification.json of {estimate.windows} windows'
-        if self._motion is None:
-            return ends
-        if refused:
-            return f'{ends}; steady windows alone: {refused}'
-        try:
-            outcome = self._motion.finish(identification)
-        except TrawlError as reason:
-            if written is not None:
-                self._write(replace(written, motion_refused=str(reason)))
-            return f'{ends}; steady windows alone: {reason}'
-        if written is not None:
-            self._write(replace(written, motion=outcome))
-        return f'{ends} and of {outcome.duration_s / 60:.0f} min of tow'
+        if outcome is not None:
+            return f'{ends} and of {outcome.duration_s / 60:.0f} min of tow'
+        return f'{ends}; steady windows alone: {refused}' if refused else ends
+
+    def _write_of(
+        self,
+        identification: Identification,
+        refused: str = '',
+        outcome: 'MotionOutcome | None' = None,
+    ) -> None:
+        if self._folder is not None:
+            found = report(identification, self._truth, gear=self._gear, chain=outcome)
+            self._write(replace(found, chain_refused=refused))
 
     def _without_windows(self, identification: Identification) -> str:
         why_not = identification.why_not() or 'nothing is estimated'
@@ -81,10 +91,10 @@ class ReportWriter:
         except TrawlError as reason:
             raise TrawlError(f'{why_not}; nor in motion: {reason}') from reason
         if self._folder is not None:
-            from trawl_ros.estimation.report.report import report_in_motion
+            from trawl_ros.estimation.report.report import report_without_windows
 
             rejections = [identification.finder.rejections]
-            self._write(report_in_motion(outcome, rejections, self._gear, self._truth))
+            self._write(report_without_windows(outcome, rejections, self._gear, self._truth))
         ends = f'{outcome.duration_s / 60:.0f} min of tow used; {outcome.fit.reason}'
         return ends if self._folder is None else f'{self._folder}: {ends}'
 

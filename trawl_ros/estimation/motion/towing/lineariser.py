@@ -38,6 +38,8 @@ UNSTABLE_DERIVATIVE = 1e6
 
 BY_SENSOR = 'a board has fallen, by its sensor'
 
+MOVES = 'the gear moves, and its steady parts alone are fitted'
+
 NEARBY = np.array([*(WindowOptions.length_tolerance,) * 2, 0.5 * WindowOptions.speed_tolerance])
 """Largest departure of warp lengths (m) and speed (m/s) from those of an equilibrium that is used
 for a stretch."""
@@ -165,7 +167,7 @@ class TowLineariser:
             if tow.steady_only:
                 self._held = self._amplitudes = None
                 self._failed = ''
-                raise NotPredicted('the gear moves')
+                raise NotPredicted(MOVES)
             if self._failed:
                 raise NotPredicted(self._failed)
             return self._in_motion(tow, stretch)
