@@ -17,7 +17,7 @@ COVERAGE = (92.0, 98.0)
 """Allowed coverage of 95 % intervals, %."""
 
 MOST_SPREAD = 0.6
-"""Std of all of the tow over that of its windows, at most."""
+"""Std of all of the tow over that of its steady parts, at most."""
 
 OVER_TRUTH, OVER_TRUTH_END = 1.1, 1.2
 """Errors in states not towed over those of the model with the true coefficients, at most, and the
@@ -28,7 +28,7 @@ ALPHA = 0.05
 BAND = tuple(float(chdtri(len(COEFFICIENTS), tail)) for tail in (0.975, 0.025))
 """Band that holds 95 % of the squared normalised errors of twelve coefficients."""
 
-WHO = ('windows alone', 'all of the tow')
+WHO = ('its steady parts', 'all of the tow')
 
 
 def motion_rows(trials: Sequence[MotionTrial], series: str, *, asked: bool) -> list[MeasuredValue]:
@@ -54,7 +54,7 @@ def _spread_row(trials: Sequence[MotionTrial], series: str, *, asked: bool) -> M
     each = np.exp((std[:, 1] - std[:, 0]).mean(axis=0))
     words = ', '.join(f'{n} {r:.2f}' for n, r in zip(COEFFICIENTS, each, strict=True))
     return figure_row(
-        f'{series}: std of all of the tow over that of its windows, geometric mean',
+        f'{series}: std of all of the tow over that of its steady parts, geometric mean',
         lambda some: float(np.exp(ratios[some].mean())),
         len(trials), '', at_most(MOST_SPREAD) if asked else None, words,
     )  # fmt: skip
@@ -67,7 +67,7 @@ def _coverage_row(
     return figure_row(
         f'{series}: 95 % intervals of {WHO[who]} that cover the truth',
         lambda some: float(100.0 * inside[some].mean()),
-        len(trials), '%', between(*COVERAGE) if asked and who else None,
+        len(trials), '%', between(*COVERAGE) if asked else None,
         f'{int(inside.sum())} of {inside.size}; {AGAIN}',
     )  # fmt: skip
 

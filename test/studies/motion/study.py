@@ -1,4 +1,4 @@
-"""Study of what a fit of all of a tow is worth, compared with that of its windows."""
+"""Study of what a fit of all of a tow is worth, compared with that of its steady parts."""
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -110,8 +110,8 @@ def method(plan: MotionPlan) -> str:
         'time. The plant is towed along the commands of the scenario demo: five states in 59 '
         'minutes, in steps of 1 s. The default instruments read it. Errors of counters and spread '
         'sensor change with each command. Offset and scale of each sensor are drawn for each '
-        'trial, as the channel table states them. The steady windows are fitted first, then the '
-        'whole tow, as by `trawl identify`. Under autotrawl the ship heaves by 2.5 m in 10 s, '
+        'trial, as the channel table states them. The steady parts and the whole '
+        'tow are fitted as by `trawl identify`, with and without `--steady`. Under autotrawl the ship heaves by 2.5 m in 10 s, '
         'equal tension is held, and steps are half as long. '
         f'The model has a net of {plan.around} meshes around its mouth; a finer plant has '
         f'{plan.task(FINER, 0).mesh}. Both estimates, and the truth, predict {len(HELD_OUT)} '

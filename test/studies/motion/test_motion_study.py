@@ -42,27 +42,27 @@ def rows_of(**changes):
 def test_intervals_as_wide_as_the_errors_reach_their_targets():
     rows = rows_of()
     assert all(row.ok for row in rows.values())
-    assert rows['x: std of all of the tow over that of its windows, geometric mean'].value == (
+    assert rows['x: std of all of the tow over that of its steady parts, geometric mean'].value == (
         pytest.approx(0.5)
     )
     squared = rows['x: squared normalised error of twelve coefficients by all of the tow, median']
     assert BAND[0] < squared.value < BAND[1]
 
 
-def test_intervals_too_narrow_miss_them_and_the_windows_do_not():
+def test_intervals_too_narrow_miss_them_and_the_steady_parts_do_not():
     rows = rows_of(narrow=1.8)
     assert not rows['x: 95 % intervals of all of the tow that cover the truth'].ok
-    assert rows['x: 95 % intervals of windows alone that cover the truth'].value > 92.0
+    assert rows['x: 95 % intervals of its steady parts that cover the truth'].value > 92.0
     name = 'x: coefficients whose coverage by {} is not 95 %, after Holm'
     assert rows[name.format('all of the tow')].value >= 6
-    assert rows[name.format('windows alone')].value == 0
+    assert rows[name.format('its steady parts')].value == 0
 
 
 def test_errors_in_states_not_towed_are_set_over_those_by_the_truth():
     what = 'x: states not towed, error in warp tension by {} over that by the truth'
     rows = rows_of(off=0.3)
     assert rows[what.format('all of the tow')].value == pytest.approx(1.3)
-    assert rows[what.format('windows alone')].value == pytest.approx(2.0)
+    assert rows[what.format('its steady parts')].value == pytest.approx(2.0)
     assert not rows[what.format('all of the tow')].ok
 
 

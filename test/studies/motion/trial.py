@@ -1,4 +1,4 @@
-"""Trial: a random board towed in time, fitted by its windows and by all of its tow."""
+"""Trial: a random board towed in time, fitted by the steady parts and by all of its tow."""
 
 import time
 from collections import Counter
@@ -48,8 +48,7 @@ class MotionTask(TrialTask):
 
 @dataclass(frozen=True)
 class MotionTrial:
-    """Result of a trial; of pairs, the first is of the steady windows, the second of all of the
-    tow.
+    """Result of a trial; of pairs, the first is of the steady parts, the second of all of the tow.
 
     Attributes
     ----------
@@ -60,7 +59,7 @@ class MotionTrial:
     squared : 2 numbers
         Squared errors of the twelve in the metric of the posterior, 12 in the mean.
     refused
-        Sentence on why all of the tow was not learned from; then the second is as the first.
+        Sentences on why a fit was refused; in its place stands that of the steady windows.
     reason, iterations
         Of the fit in motion.
     windows
@@ -164,16 +163,21 @@ def run_motion_trial(task: MotionTask) -> MotionTrial:
     read = tow_readings(plant.samples, build_water(gear).depth, task.name)
     tow = moving_tow(read, task.name, STRETCHES)
     begun = time.process_time()
-    learned, refused = None, ''
+    learned, refused = None, []
     try:
         learned = fit_tows(gear, identification, [tow], [(0,)], ())
     except TrawlError as reason:
-        refused = str(reason)
+        refused.append(str(reason))
     cpu_s = time.process_time() - begun
+    steady = estimate
+    try:
+        steady = fit_tows(gear, identification, [tow], [(0,)], (), steady=True).estimate
+    except TrawlError as reason:
+        refused.append(str(reason))
     unseen = steady_windows([plant.held_out], AS_STATED, rng, first_tow=1)
     whole = estimate if learned is None else learned.estimate
-    both = (estimate.values, whole.values)
-    covariances = estimate.covariance, whole.covariance
+    both = (steady.values, whole.values)
+    covariances = steady.covariance, whole.covariance
     predictions = [
         identification.estimator.predictions(values, unseen)
         for values in (*both, plant.coefficients)
@@ -184,14 +188,14 @@ def run_motion_trial(task: MotionTask) -> MotionTrial:
         number=task.number,
         truth=plant.coefficients.tolist(),
         values=[values.tolist() for values in both],
-        std=[estimate.std.tolist(), whole.std.tolist()],
-        low=[estimate.low.tolist(), whole.low.tolist()],
-        high=[estimate.high.tolist(), whole.high.tolist()],
+        std=[steady.std.tolist(), whole.std.tolist()],
+        low=[steady.low.tolist(), whole.low.tolist()],
+        high=[steady.high.tolist(), whole.high.tolist()],
         squared=[
             _squared(values - plant.coefficients, covariance)
             for values, covariance in zip(both, covariances, strict=True)
         ],
-        refused=refused,
+        refused='; '.join(refused),
         reason='' if fit is None else fit.reason,
         iterations=0 if fit is None else fit.iterations,
         windows=estimate.windows,

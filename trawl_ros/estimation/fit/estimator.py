@@ -31,6 +31,7 @@ from trawl_ros.estimation.fit.prediction import SteadyPredictor
 from trawl_ros.estimation.fit.window_search import NO_STEADY_STATE, WindowSearch
 from trawl_ros.estimation.least_squares.descent import DescentOptions, Rest, descend
 from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.solver.predict import Predictor
 
 if TYPE_CHECKING:
     from trawl_ros.solver.equilibrium import Equilibrium
@@ -292,11 +293,13 @@ class Estimator:
         """Start where the boards stand as a window shows them, once for each of a few states."""
         if window.state in self._stood_in or len(self._stood_in) >= self.options.standing_states:
             return None
+        if not isinstance(self.predictor, Predictor):
+            return None
         # SciPy's optimisers load slowly, and few boards fall.
         from trawl_ros.estimation.fit.standing import standing_starts
 
         self._stood_in.add(window.state)
-        for start in standing_starts(self.predictor, self.prior, window):
+        for start in standing_starts(self.predictor.model, self.prior, window.means):
             try:
                 linear = self._linearise(window, start)
             except NoSteadyState:

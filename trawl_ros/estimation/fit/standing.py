@@ -9,10 +9,8 @@ import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.fit.prediction import SteadyPredictor
-from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.model.gear_model import GearModel
 from trawl_ros.solver.first_guess import FIRST_LEAN
-from trawl_ros.solver.predict import Predictor
 from trawl_ros.solver.trimming.standing_boards import CoefficientRange, standing_coefficients
 
 MOST_STARTS = 8
@@ -20,21 +18,28 @@ MOST_STARTS = 8
 
 
 def standing_starts(
-    predictor: SteadyPredictor, prior: ParameterVector, window: SteadyWindow
+    model: GearModel, prior: ParameterVector, means: Mapping[str, float]
 ) -> Iterator[FloatArray]:
-    """Yield parameters (q,) with which the boards stand as a window shows them.
+    """Yield parameters (q,) with which the boards of a gear stand as means show them.
 
-    None come from another predictor than that of a gear with boards.
+    Parameters
+    ----------
+    model
+        The gear; none come of one without boards.
+    prior
+        Of the parameters.
+    means
+        Means by channel, those of inputs and attitudes among them, SI.
     """
-    if not isinstance(predictor, Predictor) or predictor.model.paired:
+    if model.paired:
         return
-    means, own = window.means, prior.slice_of('coefficients')
+    own = prior.slice_of('coefficients')
     pitch = _mean(means, 'port_pitch', 'starboard_pitch', 1.0, 0.0)
     roll = _mean(means, 'port_roll', 'starboard_roll', -1.0, FIRST_LEAN)
     tilt = float(np.copysign(np.arccos(np.cos(pitch) * np.cos(roll)), roll))
     place = 0.5 * (means['port_length'] + means['starboard_length']), means['speed']
     known = CoefficientRange(prior.start[own], prior.std[own], prior.low[own], prior.high[own])
-    found = standing_coefficients(predictor.model, known, place, inclination=tilt, pitch=pitch)
+    found = standing_coefficients(model, known, place, inclination=tilt, pitch=pitch)
     for values in islice(found, MOST_STARTS):
         start = np.array(prior.start)
         start[own] = values
