@@ -10,7 +10,6 @@ from trawl_ros.bags.samples import SampleStream
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.effects.effect_set import effects_of
-from trawl_ros.estimation.fit.objective import stack
 from trawl_ros.estimation.from_gear import NET_STD, board_prior
 from trawl_ros.estimation.motion.fit import fit_motion, fit_steady
 from trawl_ros.estimation.motion.fit_records import MotionOptions
@@ -105,7 +104,7 @@ def fit_tows(
     gear: GearRecord,
     identification: Identification | None,
     tows: Sequence[MovingTow],
-    numbers: Sequence[tuple[int, ...]],
+    numbers: Sequence[int],
     refused: Sequence[str],
     on_progress: OnProgress = ignore,
     *,
@@ -159,19 +158,13 @@ def fit_tows(
         # Intervals of a place that is not at rest mean nothing, and the windows have theirs.
         raise TrawlError(f'the fit of the {"steady parts" if steady else "whole tow"} did not '
                          f'converge: {fit.reason}')  # fmt: skip
-    outcome = MotionOutcome(fit, prior, tuple(numbers), tuple(refused), stack(()))
-    if identification is None:
-        return outcome
-    estimator = identification.estimator
-    held_out = hold_out_states(
-        fit, prior, estimator.windows, numbers, estimator.predictions, options
-    )
-    return replace(outcome, held_out=held_out)
+    held_out = hold_out_states(fit, prior, numbers, options)
+    return MotionOutcome(fit, prior, tuple(numbers), tuple(refused), held_out)
 
 
 def moving_tows(
     gear: GearRecord, recordings: Sequence[FoundWindows], namespace: str, on_progress: OnProgress
-) -> tuple[list[MovingTow], list[tuple[int, ...]], list[str]]:
+) -> tuple[list[MovingTow], list[int], list[str]]:
     """Read bags as tows in motion.
 
     Returns
@@ -179,27 +172,33 @@ def moving_tows(
     list
         The tows: of a bag whose inputs fall silent on the way, one for each part.
     list
-        For each, the numbers of its bag's tows among those of the windows.
+        For each, the number of its bag's first tow among those of the windows, and one behind all
+        of these for a bag without windows.
     list
         A sentence for each bag that cannot be used.
     """
     tows: list[MovingTow] = []
-    numbers: list[tuple[int, ...]] = []
+    numbers: list[int] = []
     refused: list[str] = []
     depth, first = build_water(gear).depth, 0
+    every = sum(_tows_in(recording) for recording in recordings)
     for number, recording in enumerate(recordings):
         on_progress(WorkProgress('reading all of it', number, len(recordings), 'bags'))
-        own = 1 + max((window.tow for window in recording.windows), default=-1)
+        own = _tows_in(recording)
         samples = (sample for _, sample in SampleStream([Path(recording.name)], namespace))
         try:
             read = tow_readings(samples, depth, recording.name)
             for part in moving_parts(read, recording.name, statistics=True):
                 tows.append(part)
-                numbers.append(tuple(range(first, first + own)))
+                numbers.append(first if own else every + number)
         except TrawlError as error:
             refused.append(str(error))
         first += own
     return tows, numbers, refused
+
+
+def _tows_in(recording: FoundWindows) -> int:
+    return 1 + max((window.tow for window in recording.windows), default=-1)
 
 
 def moving_parts(read: TowReadings, name: str, *, statistics: bool = False) -> Iterator[MovingTow]:

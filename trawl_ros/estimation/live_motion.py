@@ -18,9 +18,9 @@ from trawl_ros.estimation.bag_motion import (
     towed_gear,
 )
 from trawl_ros.estimation.fit.estimate import Estimate
-from trawl_ros.estimation.fit.objective import stack
 from trawl_ros.estimation.from_gear import board_prior
 from trawl_ros.estimation.motion.fit_records import MotionOptions
+from trawl_ros.estimation.motion.holdout import HeldOut
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.motion.series import TowRecorder
 from trawl_ros.estimation.motion.stretches import LONGEST_S
@@ -172,11 +172,8 @@ class LiveMotion:
         tows, refused = self._tows(None)
         if not tows:
             raise TrawlError('; '.join(refused))
-        windows = () if identification is None else identification.estimator.windows
-        own = tuple(range(1 + max((window.tow for window in windows), default=-1)))
-        numbers = [own] * len(tows)
         return fit_tows(
-            self._gear, identification, tows, numbers, refused, on_progress, net=self._net
+            self._gear, identification, tows, [0] * len(tows), refused, on_progress, net=self._net
         )
 
     def _tows(self, until_ns: int | None) -> tuple[list[MovingTow], list[str]]:
@@ -214,7 +211,7 @@ class LiveMotion:
         if found is None:
             self.why_not = self.why_not or 'the model is towed along the tow so far'
             return None
-        numbers = ((),) * len(tows)
-        outcome = MotionOutcome(found.fit, self._prior, numbers, tuple(refused), stack(()))
+        numbers = (0,) * len(tows)
+        outcome = MotionOutcome(found.fit, self._prior, numbers, tuple(refused), HeldOut())
         stamp = max(tow.start_ns + round(len(tow) * tow.stretch_s * SECOND) for tow in tows)
         return MotionUpdate(stamp, outcome, found.moved, found.towings)

@@ -229,11 +229,11 @@ def test_the_verdict_speaks_of_tows_where_there_are_several(tows, one_tow):
 
 def test_a_fit_that_predicts_badly_is_called_so(tows):
     good = report(tows)
-    bad = replace(good, held_out=replace(good.held_out, predicted=1.06 * good.measured))
+    bad = replace(good, held_out=replace(good.held_out, predicted=1.06 * good.held_out.measured))
     judged = verdict(bad)
     assert not judged.holds
     assert judged.fit.endswith('in door spread and door depth and warp tension.')
-    fair = replace(good, held_out=replace(good.held_out, predicted=1.02 * good.measured))
+    fair = replace(good, held_out=replace(good.held_out, predicted=1.02 * good.held_out.measured))
     assert 'no more than' in verdict(fair).fit
 
 

@@ -165,13 +165,13 @@ def run_motion_trial(task: MotionTask) -> MotionTrial:
     begun = time.process_time()
     learned, refused = None, []
     try:
-        learned = fit_tows(gear, identification, [tow], [(0,)], ())
+        learned = fit_tows(gear, identification, [tow], [0], ())
     except TrawlError as reason:
         refused.append(str(reason))
     cpu_s = time.process_time() - begun
     steady = estimate
     try:
-        steady = fit_tows(gear, identification, [tow], [(0,)], (), steady=True).estimate
+        steady = fit_tows(gear, identification, [tow], [0], (), steady=True).estimate
     except TrawlError as reason:
         refused.append(str(reason))
     unseen = steady_windows([plant.held_out], AS_STATED, rng, first_tow=1)

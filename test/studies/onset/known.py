@@ -92,7 +92,7 @@ def knowledge_by_tow(
     try:
         read = tow_readings(samples, build_water(believed).depth, path.stem)
         parts = list(moving_parts(read, path.stem))
-        learned = fit_tows(believed, by_windows, parts, [(0,)] * len(parts), ())
+        learned = fit_tows(believed, by_windows, parts, [0] * len(parts), ())
         if learned.fit.converged:
             sizes = learned.fit.sizes.no_less_than(STATED)
             return Knowledge(learned.fit.values, learned.fit.covariance, densities, sizes), BY_TOW

@@ -1,132 +1,151 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Hold-out of steady states from a fit in motion, at the place where its tows are linearised."""
+"""Hold-out of tows, or of the steady states of one, at the place where tows are linearised."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from trawl_ros.core.arrays import BoolArray, FloatArray
-from trawl_ros.core.time import SECOND
-from trawl_ros.estimation.fit.linearised import measured_inputs
-from trawl_ros.estimation.fit.objective import PAPER_CHANNELS
+from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.least_squares.linear_problem import Place
 from trawl_ros.estimation.motion.fit_records import MotionFit, MotionOptions
 from trawl_ros.estimation.motion.information import LinearGroup
 from trawl_ros.estimation.motion.processes import GroupRows
 from trawl_ros.estimation.motion.sizes import LinearData
 from trawl_ros.estimation.motion.steps import linear_problem
-from trawl_ros.estimation.motion.towing.inputs import corrected
-from trawl_ros.estimation.motion.towing.records import MovingTow
-from trawl_ros.estimation.windows.records import SteadyWindow
 
-Predict = Callable[[FloatArray, Sequence[SteadyWindow], FloatArray | None, FloatArray], FloatArray]
-"""Channels of eq. 35 (n, 4) in windows, by coefficients (q,), factors (2,) on drag and weight
-of the net, None where these are held, and warp lengths (m) and speed (m/s) (n, 3)."""
+FOLDS, SEED = 5, 0
+"""Parts into which the states of a single tow are dealt, and the seed of their random order."""
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Predictions of what was left out of a fit, in the channels of eq. 35.
+
+    Attributes
+    ----------
+    by
+        'tow' or 'state'.
+    groups
+        Number of tows or states.
+    measured, predicted : (n, 4) arrays
+        In the order of `PAPER_CHANNELS`; NaN where a fit or a steady state is missing.
+    tows : (n,) int array
+        Number of the tow of each row.
+    """
+
+    by: str = 'tow'
+    groups: int = 0
+    measured: FloatArray = field(default_factory=lambda: stack(()))
+    predicted: FloatArray = field(default_factory=lambda: stack(()))
+    tows: IntArray = field(default_factory=lambda: np.zeros(0, np.int64))
+
+
+def dealt(states: Sequence[int], folds: int = FOLDS, seed: int = SEED) -> list[set[int]]:
+    """Deal states to folds in a random order, so that a fold is not one warp length at all speeds.
+
+    With fewer states than folds each is left out alone.
+    """
+    order = np.random.default_rng(seed).permutation(sorted(set(states)))
+    parts = np.array_split(order, min(folds, max(len(order), 1)))
+    return [set(part.tolist()) for part in parts]
 
 
 def hold_out_states(
     fit: MotionFit,
     prior: ParameterVector,
-    windows: Sequence[SteadyWindow],
-    tow_of: Sequence[tuple[int, ...]],
-    predict: Predict,
+    tow_of: Sequence[int],
     options: MotionOptions,
-) -> FloatArray:
-    """Predict each window by a fit without its tow, or its state where there is one tow.
+) -> HeldOut:
+    """Predict steady stretches by a fit without their tow, or their state where there is one tow.
 
     A state is left out with the motion that led to it: from the end of the state before to its own
-    end. The tows are not towed again. Counters and log err in it as in the rest of its tow, and not
-    at all where no part of that is left: so it is for the windows (`Estimator.inputs_of`).
+    end. The tows are not towed again: predictions are of first order about the fit of all. Counters
+    and log err in what is left out as in the rest of its tow; errors of its sensors are not
+    corrected.
 
     Parameters
     ----------
     fit, prior
-        The fit in motion.
-    windows
-        Steady windows (n).
+        The fit.
     tow_of
-        Of each tow of the fit, the numbers of its tows among the windows.
-    predict
-        Predicts windows.
+        Number of the tow of which each tow of the fit is a part.
     options
         With which the tows were fitted.
     """
-    predicted = np.full((len(windows), len(PAPER_CHANNELS)), np.nan)
-    folds, tows = folds_of(windows), {window.tow for window in windows}
-    if len(folds) < 2:
-        return predicted
-    for fold in folds:
-        hidden = {window.tow for window in windows if window.state in fold}
-        keep = [
-            np.zeros(len(linear.tow), np.bool_)
-            if len(tows) > 1 and hidden & set(numbers)
-            else ~_stretches(linear.tow, windows, fold, numbers)
-            for linear, numbers in zip(fit.linear, tow_of, strict=True)
+    several = len(set(tow_of)) > 1
+    states = [
+        np.where(linear.tow.steady, number if several else linear.tow.steady_part, -1)
+        for number, linear in zip(tow_of, fit.linear, strict=True)
+    ]
+    every = np.unique(np.concatenate(states))
+    every = every[every >= 0]
+    folds = [{int(tow)} for tow in every] if several else dealt(every.tolist())
+    predicted = [np.full(linear.values.shape, np.nan) for linear in fit.linear]
+    for fold in folds if len(every) > 1 else ():
+        hidden = [
+            np.full(len(own), number in fold) if several else _led_to(own, fold)
+            for number, own in zip(tow_of, states, strict=True)
         ]
-        data = restricted(fit.data, keep)
+        data = restricted(fit.data, [~flags for flags in hidden])
         problem = linear_problem(data, fit.parameters, prior, fit.sizes, options.largest_step)
-        there = problem.target()
-        rows = [i for i, window in enumerate(windows) if window.state in fold]
-        values = prior.start + prior.std * there[0][: len(prior)]
-        net = fit.layouts[0].net(there[0]) if fit.net else None
-        left_out = [windows[i] for i in rows]
-        inputs = np.array([_inputs(fit, there, window, tow_of) for window in left_out])
-        predicted[rows] = predict(values, left_out, net, inputs)
-    return predicted
+        for number, z in enumerate(problem.target()):
+            found = _predicted(fit, number, z)
+            own = hidden[number] & (states[number] >= 0)
+            predicted[number][own] = found[own]
+    return _gathered(fit, predicted, states, tow_of, 'tow' if several else 'state', len(every))
 
 
-def folds_of(windows: Sequence[SteadyWindow], folds: int = 5, seed: int = 0) -> list[set[int]]:
-    """States of windows that are left out together: those of a tow.
-
-    Of a single tow they are dealt to folds in a random order, so that a fold is not one warp length
-    at all speeds. With fewer states than folds each is left out alone.
-    """
-    tows = sorted({window.tow for window in windows})
-    if len(tows) > 1:
-        return [{window.state for window in windows if window.tow == tow} for tow in tows]
-    states = np.random.default_rng(seed).permutation(sorted({w.state for w in windows}))
-    parts = np.array_split(states, min(folds, max(len(states), 1)))
-    return [set(part.tolist()) for part in parts]
+def _led_to(states: IntArray, fold: set[int]) -> BoolArray:
+    """Flags (n,) of the stretches of states in a fold, with those that led to them."""
+    # A moving stretch belongs to the steady state behind it.
+    own, state = np.zeros(len(states), np.int64), -1
+    for stretch in reversed(range(len(states))):
+        state = int(states[stretch]) if states[stretch] >= 0 else state
+        own[stretch] = state
+    return np.isin(own, sorted(fold))
 
 
-def _inputs(
-    fit: MotionFit, place: Place, window: SteadyWindow, tow_of: Sequence[tuple[int, ...]]
-) -> FloatArray:
-    """Warp lengths and speed (3,) of a window, corrected for their errors.
-
-    The errors are those in the part of its tow that is nearest to it.
-    """
-
-    def away(number: int) -> float:
-        tow = fit.linear[number].tow
-        end = (window.end_ns - tow.start_ns) / SECOND
-        return max(-end, end - len(tow) * tow.stretch_s)
-
-    shown = measured_inputs(window)
-    parts = [number for number, numbers in enumerate(tow_of) if window.tow in numbers]
-    if not parts:
-        return shown
-    nearest = min(parts, key=away)
-    return corrected(shown, place[nearest][fit.layouts[nearest].slices['errors']])
+def _predicted(fit: MotionFit, number: int, z: FloatArray) -> FloatArray:
+    """Means (n, k) of a tow at parameters (p,), without errors of its sensors or of the model."""
+    tow, slices = fit.linear[number].tow, fit.layouts[number].slices
+    z = z.copy()
+    z[slices['model']] = z[slices['calibration']] = 0.0
+    found = np.full(tow.means.shape, np.nan)
+    for group in fit.data.tows[number]:
+        place = group.rows.stretches, group.rows.channels
+        found[place] = tow.means[place] - group.residual + group.columns @ z
+    return found
 
 
-def _stretches(
-    tow: MovingTow, windows: Sequence[SteadyWindow], states: set[int], numbers: Sequence[int]
-) -> BoolArray:
-    """Flags (n,) of the stretches that belong to states, with what led to them."""
-    flags = np.zeros(len(tow), np.bool_)
-    own = sorted((w for w in windows if w.tow in numbers), key=lambda window: window.end_ns)
-    before = -np.inf
-    for number, window in enumerate(own):
-        end = (window.end_ns - tow.start_ns) / SECOND
-        if window.state in states:
-            flags |= (tow.middles > before) & (tow.middles <= end)
-        if number + 1 == len(own) or own[number + 1].state != window.state:
-            before = end
-    return flags
+def _gathered(
+    fit: MotionFit,
+    predicted: Sequence[FloatArray],
+    states: Sequence[IntArray],
+    tow_of: Sequence[int],
+    by: str,
+    groups: int,
+) -> HeldOut:
+    """Stretches whose four channels of eq. 35 were all measured."""
+    rows: list[tuple[FloatArray, FloatArray, IntArray]] = []
+    for linear, values, state, tow in zip(fit.linear, predicted, states, tow_of, strict=True):
+        measured = _paper_rows(linear.tow.means, linear.tow.channels)
+        there = np.isfinite(measured).all(axis=1) & (state >= 0)
+        found = _paper_rows(values, linear.tow.channels)
+        rows.append((measured[there], found[there], np.full(int(there.sum()), tow)))
+    measured, found, tows = (np.concatenate(part) for part in zip(*rows, strict=True))
+    return HeldOut(by, groups, measured, found, tows)
+
+
+def _paper_rows(means: FloatArray, channels: Sequence[str]) -> FloatArray:
+    """Channels of eq. 35 (n, 4) by means (n, k)."""
+    columns = []
+    for row in PAPER_CHANNELS:
+        own = [channels.index(name) for name in row.observables if name in channels]
+        columns.append(means[:, own].mean(axis=1) if own else np.full(len(means), np.nan))
+    return np.stack(columns, axis=1)
 
 
 def restricted(data: LinearData, keep: Sequence[BoolArray]) -> LinearData:

@@ -22,6 +22,7 @@ from trawl_ros.estimation.fit.fitted_estimate import tow_biases
 from trawl_ros.estimation.fit.parameters import ParameterVector
 from trawl_ros.estimation.least_squares.information import Information, extended_root, joined
 from trawl_ros.estimation.motion.fit_records import MotionFit
+from trawl_ros.estimation.motion.holdout import HeldOut
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS
 from trawl_ros.estimation.motion.towing.records import LeftOut
 from trawl_ros.records.channels import INPUTS
@@ -53,19 +54,18 @@ class MotionOutcome:
     prior
         Of the coefficients.
     numbers
-        Of each tow in the fit, the numbers of its tows among the windows; empty without windows.
+        Of each tow in the fit, the number of the tow that it is a part of.
     refused
         A sentence for each bag, or part of one, that is not in the fit.
-    held_out : (n, 4) array
-        Steady windows in the channels of eq. 35, predicted by fits without the stretches of their
-        state; NaN where there is no prediction.
+    held_out
+        Steady stretches, predicted by fits without their tow or state.
     """
 
     fit: MotionFit
     prior: ParameterVector
-    numbers: tuple[tuple[int, ...], ...]
+    numbers: tuple[int, ...]
     refused: tuple[str, ...]
-    held_out: FloatArray
+    held_out: HeldOut
 
     @property
     def steady_only(self) -> bool:
@@ -121,7 +121,7 @@ class MotionOutcome:
                 zip(linear.tow.channels, np.nanmean(linear.tow.means, axis=0), strict=True)
             )
             means |= dict(zip(INPUTS, linear.tow.inputs.values.mean(axis=0), strict=True))
-            tow = min(self.numbers[number], default=number)
+            tow = self.numbers[number]
             for part, terms in (
                 ('calibration', channel_errors(layout.channels)),
                 ('errors', INPUT_ERRORS),

@@ -2,17 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hold-out errors: prediction of whole tows, or whole steady states, left out of the fit."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.estimation.fit.estimator import Estimator
-from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, stack
-from trawl_ros.estimation.motion.holdout import folds_of
-from trawl_ros.estimation.windows.records import SteadyWindow
+from trawl_ros.estimation.fit.objective import PAPER_CHANNELS, paper_values, stack
+from trawl_ros.estimation.motion.holdout import HeldOut, dealt
 
 NEAR_ENOUGH = 0.1
 """Step, in std, at which fits for hold-out have converged."""
@@ -23,31 +20,6 @@ those of fits at rest to a hundredth, with three quarters of the steady states t
 
 STEPS = 3
 """They start at the rest of all windows, from where the first step leads nearly all the way."""
-
-
-@dataclass(frozen=True)
-class HeldOut:
-    """Hold-out predictions of the windows left out.
-
-    Attributes
-    ----------
-    by
-        'tow' or 'state'.
-    groups
-        Number of tows or states.
-    predicted : (n, 4) array
-        In the order of `PAPER_CHANNELS`, NaN where a fit or a steady state is missing.
-    """
-
-    by: str = 'tow'
-    groups: int = 0
-    predicted: FloatArray = field(default_factory=lambda: stack(()))
-
-
-def held_out_by(windows: Sequence[SteadyWindow], predicted: FloatArray) -> HeldOut:
-    """Hold-out by tows where there are several, else by states, with predictions (n, 4)."""
-    by = 'tow' if len({window.tow for window in windows}) > 1 else 'state'
-    return HeldOut(by, len({getattr(window, by) for window in windows}), predicted)
 
 
 def hold_out(
@@ -77,9 +49,17 @@ def hold_out(
     windows = estimator.windows
     predicted = np.full((len(windows), len(PAPER_CHANNELS)), np.nan)
     states = {window.state for window in windows}
-    folds_of_states = folds_of(windows, folds, seed)
-    if len(states) < 2:
-        return held_out_by(windows, predicted)
+    tows = sorted({window.tow for window in windows})
+    several = len(tows) > 1
+    parts = [{w.state for w in windows if w.tow == tow} for tow in tows]
+    left = parts if several else dealt(sorted(states), folds, seed)
+    found = HeldOut(
+        'tow' if several else 'state', len(tows) if several else len(states),
+        stack([paper_values(window.means) for window in windows]), predicted,
+        np.array([window.tow for window in windows]),
+    )  # fmt: skip
+    if found.groups < 2:
+        return found
     options = replace(
         estimator.options,
         relinearise_final=PREDICTED,
@@ -88,10 +68,8 @@ def hold_out(
         # They are stopped before they are at rest.
         second_start=False,
     )
-    for number, left_out in enumerate(folds_of_states):
-        on_progress(
-            WorkProgress('leaving out, one after another', number, len(folds_of_states), 'fits')
-        )
+    for number, left_out in enumerate(left):
+        on_progress(WorkProgress('leaving out, one after another', number, len(left), 'fits'))
         rest = estimator.subset(states - left_out, options)
         if rest.finish() is None:
             continue
@@ -99,4 +77,4 @@ def hold_out(
         unseen = [windows[i] for i in rows]
         inputs = rest.inputs_of(unseen)
         predicted[rows] = rest.predictions(rest.coefficients, unseen, inputs=inputs)
-    return held_out_by(windows, predicted)
+    return found

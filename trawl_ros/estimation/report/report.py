@@ -22,9 +22,10 @@ from trawl_ros.estimation.fit.laws import (
 from trawl_ros.estimation.fit.linearised import Linearised, paper_rows
 from trawl_ros.estimation.fit.objective import mnae, objective, paper_values, stack
 from trawl_ros.estimation.fit.parameters import ParameterVector
+from trawl_ros.estimation.motion.holdout import HeldOut
 from trawl_ros.estimation.motion.outcome import MotionOutcome
 from trawl_ros.estimation.pipeline import Identification, WindowUsed
-from trawl_ros.estimation.report.holdout import HeldOut, held_out_by, hold_out
+from trawl_ros.estimation.report.holdout import hold_out
 from trawl_ros.estimation.report.residuals import (
     ChannelResiduals,
     innovations,
@@ -194,7 +195,7 @@ class Report:
         return {
             'start': mnae(self.at_start, self.measured),
             'end': mnae(self.at_end, self.measured),
-            'held_out': mnae(self.held_out.predicted, self.measured),
+            'held_out': mnae(self.held_out.predicted, self.held_out.measured),
         }
 
     @property
@@ -202,7 +203,7 @@ class Report:
         """Outcomes of the tows."""
         outcomes = []
         for tow in map(int, np.unique(self.tow_of)):
-            of_tow = self.tow_of == tow
+            left_out, own = self.held_out, self.held_out.tows == tow
             windows = [window for window in self.windows if window.tow == tow]
             outcomes.append(
                 TowOutcome(
@@ -210,7 +211,7 @@ class Report:
                     name=self.tows[tow],
                     windows=len(windows),
                     states=len({window.state for window in windows}),
-                    held_out=mnae(self.held_out.predicted[of_tow], self.measured[of_tow]),
+                    held_out=mnae(left_out.predicted[own], left_out.measured[own]),
                 )
             )
         return tuple(outcomes)
@@ -258,7 +259,8 @@ def report(
     own = [linear.state for linear in estimator.fit.windows]
     net = estimator.fit.net
     if chain is not None:
-        estimate = replace(chain.estimate, windows=len(windows), tow_biases=chain.tow_biases)
+        biases = tuple(bias for bias in chain.tow_biases if bias.tow < number)
+        estimate = replace(chain.estimate, windows=len(windows), tow_biases=biases)
         net = None if net is None else np.array([factor.value for factor in estimate.net])
     at_end = estimator.solve(estimate.values, net=net, own=own)
     at_start = estimator.solve(estimator.prior.start)
@@ -282,7 +284,7 @@ def report(
         at_end=paper_rows(at_end),
         held_out=hold_out(estimator, folds, on_progress=on_progress)
         if chain is None
-        else held_out_by(windows, chain.held_out),
+        else chain.held_out,
         at_truth=None if truth is None else paper_rows(estimator.solve(truth)),
         residuals=residuals(at_end),
         innovations=innovations(identification.course),
@@ -320,7 +322,7 @@ def report_without_windows(
         every.counts.update(rejected.counts)
         every.sentences.update(rejected.sentences)
     return Report(
-        estimate=replace(chain.estimate, tow_biases=chain.tow_biases),
+        estimate=chain.estimate,
         tows=chain.names,
         rejected={key: every.counts[key] for key in REASONS if every.counts[key]},
         found={key: every.sentences[key] for key in REASONS if key in every.sentences},
