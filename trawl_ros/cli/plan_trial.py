@@ -88,8 +88,8 @@ def command(
     """Plan a sea trial that determines the boards of GEAR best in a given time.
 
     GEAR is a gear file or the name of a gear of the package. The command prints the expected
-    accuracy, compared with the paper's sweep of warp lengths at one speed. With --out it writes the
-    plan, a scenario for `trawl tow`, and a picture.
+    accuracy, compared with the paper's sweep of warp lengths at one speed, and what a fit of the
+    whole tow will know. With --out it writes the plan, a scenario for `trawl tow`, and a picture.
     """
     from trawl_ros.api import trials
     from trawl_ros.estimation.planning.states import Limits
@@ -151,6 +151,21 @@ def print_plan(plan: 'TrialPlan', units: DisplayUnits = METRIC) -> None:
         numbers = [getattr(trial, kind).well_known.sum() for trial in trials]
         known.add_row(title, '', '', *(f'{number} of {len(QUANTITIES)}' for number in numbers))
     console.print(known)
+    if plan.in_motion is not None:
+        steady, whole = plan.in_motion.steady.well_known, plan.in_motion.whole.well_known
+        console.print(
+            '\nThe table counts steady windows only. By the steady parts of the tow '
+            f'{steady.sum()} of {len(steady)} are well known; with hauling, veering and changes of '
+            f'speed {whole.sum()} of {len(whole)}, and standard deviations are '
+            f'{plan.in_motion.ratio:.2f} times as large.',
+            soft_wrap=True,
+        )
+    elif plan.windows_only:
+        console.print(
+            '\nThe table counts steady windows only: the model cannot be towed along the plan. '
+            f'{plan.windows_only}',
+            soft_wrap=True,
+        )
     sweep = plan.sweeps[0]
     if sweep.legs:
         console.print(
