@@ -151,21 +151,7 @@ def print_plan(plan: 'TrialPlan', units: DisplayUnits = METRIC) -> None:
         numbers = [getattr(trial, kind).well_known.sum() for trial in trials]
         known.add_row(title, '', '', *(f'{number} of {len(QUANTITIES)}' for number in numbers))
     console.print(known)
-    if plan.in_motion is not None:
-        steady, whole = plan.in_motion.steady.well_known, plan.in_motion.whole.well_known
-        console.print(
-            '\nThe table counts steady windows only. By the steady parts of the tow '
-            f'{steady.sum()} of {len(steady)} are well known; with hauling, veering and changes of '
-            f'speed {whole.sum()} of {len(whole)}, and standard deviations are '
-            f'{plan.in_motion.ratio:.2f} times as large.',
-            soft_wrap=True,
-        )
-    elif plan.windows_only:
-        console.print(
-            '\nThe table counts steady windows only: the model cannot be towed along the plan. '
-            f'{plan.windows_only}',
-            soft_wrap=True,
-        )
+    console.print(f'\nThe table counts steady windows only. {_in_motion(plan)}', soft_wrap=True)
     sweep = plan.sweeps[0]
     if sweep.legs:
         console.print(
@@ -182,3 +168,19 @@ def print_plan(plan: 'TrialPlan', units: DisplayUnits = METRIC) -> None:
             f'possible: {reasons}.',
             soft_wrap=True,
         )
+
+
+def _in_motion(plan: 'TrialPlan') -> str:
+    """Return what a fit of the whole tow will know, or why that is not known."""
+    known = plan.in_motion
+    if known is None:
+        return f'What a fit of the whole tow will know cannot be told: {plan.windows_only}.'
+    steady, whole = known.steady.well_known, known.whole.well_known
+    told = (
+        f'By the steady parts of the tow {steady.sum()} of {len(steady)} are well known; with '
+        f'hauling, veering and changes of speed {whole.sum()} of {len(whole)}, and standard '
+        f'deviations are {known.ratio:.2f} times as large.'
+    )
+    if known.left_out:
+        told += f' {known.left_out_minutes:.1f} min do not count: {known.left_out[0].why}.'
+    return told

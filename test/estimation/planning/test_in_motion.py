@@ -1,14 +1,13 @@
 """A plan knows what a fit of the whole tow will know, and says where the model cannot be towed."""
 
-import dataclasses
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import yaml
 
-from trawl_ros.core.errors import NoSteadyState
 from trawl_ros.estimation.planning.duration import Leg, winch_time
-from trawl_ros.estimation.planning.in_motion import known_in_motion, planned_readings
+from trawl_ros.estimation.planning.in_motion import planned_readings
 from trawl_ros.estimation.planning.plan import TrialPlan, plan_for, towed_plan
 from trawl_ros.estimation.planning.scenario import scenario_of
 from trawl_ros.estimation.planning.states import PLANNED, Limits, Manoeuvre
@@ -32,6 +31,7 @@ def plan(record) -> TrialPlan:
 def test_hauling_and_veering_tell_more_than_steady_parts(plan):
     known = plan.in_motion
     assert not plan.windows_only
+    assert not known.left_out
     assert np.all(known.whole.sd < known.steady.sd)
     assert known.ratio < 0.8
     assert known.whole.well_known.sum() > known.steady.well_known.sum()
@@ -65,17 +65,25 @@ def scenario_file(plan, record, folder):
     return load_scenario(path)
 
 
+NOT_TOWABLE = Leg(Manoeuvre(30.0, 900.0, 0.6), 20.0)
+
+
+def with_legs(plan, *legs):
+    return replace(plan, trial=replace(plan.trial, legs=legs), in_motion=None)
+
+
 def test_where_the_model_cannot_be_towed_the_plan_says_so(plan, record):
-    legs = (*plan.trial.legs[:1], Leg(Manoeuvre(30.0, 900.0, 0.6), 40.0))
-    trial = dataclasses.replace(plan.trial, legs=legs)
-    with pytest.raises(NoSteadyState, match='after the beginning'):
-        known_in_motion(record, trial, plan.problem)
-    told = towed_plan(record, dataclasses.replace(plan, trial=trial, in_motion=None))
+    told = towed_plan(record, with_legs(plan, NOT_TOWABLE, NOT_TOWABLE))
     assert told.in_motion is None
-    assert 'after the beginning' in told.windows_only
+    assert 'cannot be towed' in told.windows_only
+
+
+def test_what_can_be_towed_counts_and_the_rest_is_told(plan, record):
+    told = towed_plan(record, with_legs(plan, plan.trial.legs[0], NOT_TOWABLE))
+    assert 10.0 < told.in_motion.left_out_minutes <= NOT_TOWABLE.minutes
+    assert np.any(told.in_motion.whole.sd < 0.5 * plan.before.sd)
 
 
 def test_a_trial_that_the_fit_would_refuse_is_not_towed(plan, record):
-    legs = tuple(dataclasses.replace(leg, minutes=300.0) for leg in plan.trial.legs)
-    long = dataclasses.replace(plan, trial=dataclasses.replace(plan.trial, legs=legs))
-    assert 'at most' in towed_plan(record, long).windows_only
+    legs = [replace(leg, minutes=300.0) for leg in plan.trial.legs]
+    assert 'at most' in towed_plan(record, with_legs(plan, *legs)).windows_only

@@ -18,7 +18,7 @@ from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.estimation.fit.error_terms import GROUPS, LONGER, USUAL_LENGTH
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.motion.expected import ExpectedRows, expected_rows
+from trawl_ros.estimation.motion.expected import expected_rows
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.sizes import LinearData
 from trawl_ros.estimation.motion.towing.inputs import without_errors
@@ -92,14 +92,14 @@ def information_in_motion(gear: ExaminedGear, tows: Sequence[MovingTow]) -> Moti
     TrawlError
         If it cannot be towed along any stretch.
     """
-    rows = expected_rows(gear.watched.towed, tows, gear.prior, gear.coefficients, OPTIONS)
+    towed = gear.watched.towed
+    linear, usual = expected_rows(towed, tows, gear.prior, gear.coefficients, OPTIONS)
     counted = sum(
-        own.tow.stretch_s * float(np.sum(np.isfinite(own.residual).any(axis=1)))
-        for own in rows.linear
+        own.tow.stretch_s * float(np.sum(np.isfinite(own.residual).any(axis=1))) for own in linear
     )
     if not counted:
         raise TrawlError('the model cannot be towed along any stretch of the tows')
-    data = _with_values(gear, rows)
+    data = _with_values(gear, linear, usual)
     matrix, number = data.joined(OPTIONS.sizes).matrix, len(gear.units)
     errors, values = np.split(np.arange(data.shared), [data.shared - number])
     mass = np.array([len(gear.prior)])
@@ -110,13 +110,15 @@ def information_in_motion(gear: ExaminedGear, tows: Sequence[MovingTow]) -> Moti
     )
 
 
-def _with_values(gear: ExaminedGear, expected: ExpectedRows) -> LinearData:
+def _with_values(
+    gear: ExaminedGear, linear: Sequence[LinearisedTow], data: LinearData
+) -> LinearData:
     """Rows with more columns behind those that all tows share: trends of the model's error, and
     values of effects, which are shared too.
     """
-    data, found = expected.data, []
+    found = []
     first, added = data.shared, len(GROUPS) + len(gear.units)
-    for groups, tow in zip(data.tows, expected.linear, strict=True):
+    for groups, tow in zip(data.tows, linear, strict=True):
         longer = np.log(_lengths(tow.tow) / USUAL_LENGTH) / np.log(LONGER)
         effects = _by_values(gear.watched, tow) * gear.units
         wider = []

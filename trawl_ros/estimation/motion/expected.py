@@ -3,7 +3,7 @@
 """Rows of tows by the model alone: what a fit would know, without data."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,24 +19,14 @@ from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 
 
-@dataclass(frozen=True)
-class ExpectedRows:
-    """Tows as they are linearised at one place, and their rows."""
-
-    linear: tuple[LinearisedTow, ...]
-    data: LinearData
-
-
 def expected_rows(
     gear: TowedGear,
     tows: Sequence[MovingTow],
     prior: ParameterVector,
     coefficients: FloatArray,
     options: MotionOptions,
-    *,
-    complete: bool = False,
     on_stretch: Callable[[int], None] = lambda number: None,
-) -> ExpectedRows:
+) -> tuple[list[LinearisedTow], LinearData]:
     """Tow a gear along tows, with all errors of inputs and sensors at nought.
 
     Parameters
@@ -49,24 +39,23 @@ def expected_rows(
         Prior of the coefficients, and these (q,).
     options
         Of the fit.
-    complete
-        True if no stretch may be left out that a fit of the tows predicts.
     on_stretch
         Called after each stretch of a tow, with its number.
 
-    Raises
-    ------
-    NoSteadyState
-        If a stretch is left out that may not be.
+    Returns
+    -------
+    list
+        Tows as they are linearised, with means as the model predicts them.
+    LinearData
+        Their rows.
     """
     layouts = [layout_of(tow, gear, options.model) for tow in tows]
     places = place_at(coefficients, prior, layouts)
     linear = []
     for tow, layout, z in zip(tows, layouts, places, strict=True):
         point = point_of(tow, layout, z, prior.start, prior.std)
-        required = (tow.steady | (not tow.steady_only)) if complete else None
-        towed = linearise_tow(gear, tow, point, required, on_stretch)
+        towed = linearise_tow(gear, tow, point, on_stretch=on_stretch)
         means = np.where(np.isfinite(tow.means), towed.values, np.nan)
         linear.append(replace(towed, tow=replace(tow, means=means)))
     noise = [tow.noise for tow in tows]
-    return ExpectedRows(tuple(linear), linear_data(linear, layouts, places, prior, options, noise))
+    return linear, linear_data(linear, layouts, places, prior, options, noise)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from trawl_ros.core.arrays import FloatArray
-from trawl_ros.core.errors import ScenarioError
+from trawl_ros.core.errors import ScenarioError, TrawlError
 from trawl_ros.core.progress import OnProgress, WorkProgress, ignore
 from trawl_ros.core.schema import validated
 from trawl_ros.estimation.bag_motion import STRETCHES, towed_gear
@@ -17,7 +17,8 @@ from trawl_ros.estimation.motion.expected import expected_rows
 from trawl_ros.estimation.motion.fit_records import MotionOptions
 from trawl_ros.estimation.motion.series import Series, TowReadings
 from trawl_ros.estimation.motion.stretches import GRID_S, moving_tow
-from trawl_ros.estimation.motion.towing.records import MovingTow
+from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
+from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
 from trawl_ros.estimation.planning.scenario import scenario_of
 from trawl_ros.estimation.planning.search import DesignProblem
 from trawl_ros.estimation.planning.states import PLANNED
@@ -29,19 +30,27 @@ from trawl_ros.scenario.records import ScenarioRecord
 from trawl_ros.scenario.scenario import Scenario
 from trawl_ros.simulation.ship import Ship, Winch
 
-OPTIONS = MotionOptions()
-
 
 @dataclass(frozen=True)
 class KnownInMotion:
     """Quantities known after a fit of the towed plan.
 
-    ``steady`` are those by its steady parts alone, and ``whole`` those with hauling, veering and
-    changes of speed.
+    Attributes
+    ----------
+    steady, whole
+        By its steady parts alone, and with hauling, veering and changes of speed.
+    left_out
+        Stretches along which the model cannot be towed, so that they do not count.
     """
 
     steady: LawQuantities
     whole: LawQuantities
+    left_out: tuple[LeftOut, ...] = ()
+
+    @property
+    def left_out_minutes(self) -> float:
+        """Time of the stretches that are left out, min."""
+        return sum(part.end - part.begin for part in self.left_out) / 60.0
 
     @property
     def ratio(self) -> float:
@@ -68,14 +77,17 @@ def known_in_motion(
     Raises
     ------
     TrawlError
-        If the model cannot be towed along all commands, or the trial is too long for the fit.
+        If the model cannot be towed along any of it, or the trial is too long for the fit.
     """
     path = Path('trial.yaml')
     record = validated(ScenarioRecord, scenario_of(trial, gear.name), path, ScenarioError)
     scenario = Scenario(path, record, gear, gear, load_instruments())
     tow = moving_tow(planned_readings(scenario), 'the trial', STRETCHES)
-    steady = _known(gear, tow.only_steady(), problem, ignore)
-    return KnownInMotion(steady, _known(gear, tow, problem, on_progress))
+    whole, linear = _known(gear, tow, problem, on_progress)
+    if not linear.towed.any():
+        raise TrawlError(linear.left_out[0].why)
+    steady, _ = _known(gear, tow.only_steady(), problem, ignore)
+    return KnownInMotion(steady, whole, linear.left_out)
 
 
 def planned_readings(scenario: Scenario) -> TowReadings:
@@ -114,17 +126,17 @@ def _times(scenario: Scenario, rate: float) -> FloatArray:
 
 def _known(
     gear: GearRecord, tow: MovingTow, problem: DesignProblem, on_progress: OnProgress
-) -> LawQuantities:
-    """Quantities known after a fit of a tow."""
+) -> tuple[LawQuantities, LinearisedTow]:
+    """Quantities known after a fit of a tow, and the tow as it is linearised."""
     total = len(tow) * tow.stretch_s
 
     def show(stretch: int) -> None:
         done = (stretch + 1) * tow.stretch_s
         on_progress(WorkProgress('towing along the plan', done, total, 's'))
 
-    towed, prior, own = towed_gear(gear, net=False), problem.prior, slice(0, len(problem.prior))
-    rows = expected_rows(
-        towed, [tow], prior, problem.coefficients, OPTIONS, complete=True, on_stretch=show
+    towed, prior, options = towed_gear(gear, net=False), problem.prior, MotionOptions()
+    (linear,), data = expected_rows(
+        towed, [tow], prior, problem.coefficients, options, on_stretch=show
     )
-    covariance = rows.data.joined(OPTIONS.sizes).covariance[own, own]
-    return problem.quantities(covariance * np.outer(prior.std, prior.std))
+    covariance = data.joined(options.sizes).covariance[: len(prior), : len(prior)]
+    return problem.quantities(covariance * np.outer(prior.std, prior.std)), linear

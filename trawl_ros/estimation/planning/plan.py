@@ -80,9 +80,9 @@ class TrialPlan:
         The paper's sweep in the same time, with all planned channels and with the paper's.
     in_motion
         What a fit of the whole tow will know; None where `towed_plan` was not called, or the model
-        cannot be towed along the plan.
+        cannot be towed along any of the plan.
     windows_only
-        Why the model cannot be towed along it; '' if it can.
+        Why it cannot; '' if it can.
 
     Examples
     --------

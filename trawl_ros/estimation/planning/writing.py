@@ -93,6 +93,7 @@ def plan_record(plan: TrialPlan) -> dict[str, object]:
             f'well_known_by_{part}': int(known.well_known.sum())
             for part, known in _in_motion(plan).items()
         },
+        'minutes_left_out': None if plan.in_motion is None else plan.in_motion.left_out_minutes,
         'windows_only': plan.windows_only or None,
         'trials': [_trial(trial) for trial in (plan.trial, *plan.sweeps)],
         'refused': [
