@@ -25,6 +25,10 @@ def test_prints_and_writes_a_plan_that_can_be_towed(done, run, coarse_gear, tmp_
     for one in found['quantities'].values():
         assert (one['limited_by'] is None) == one['well_known']
     assert found['trials'][0]['name'] == 'plan'
+    assert (
+        found['well_known_by_steady_parts'] <= found['well_known_by_whole_tow'] <= len(QUANTITIES)
+    )
+    assert found['windows_only'] is None
 
     scenario = load_scenario(tmp_path / 'out' / 'trial.yaml')
     assert scenario.duration_s == 60.0 * found['minutes']

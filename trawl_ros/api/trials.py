@@ -270,7 +270,8 @@ def plan_trial(
     Returns
     -------
     TrialPlan
-        The ``trial`` with its legs, the gain of each leg, and the paper's sweep for comparison.
+        The ``trial`` with its legs, the gain of each leg, what a fit of the whole tow will know,
+        and the paper's sweep for comparison.
 
     Raises
     ------
@@ -286,11 +287,13 @@ def plan_trial(
     >>> len(plan.gains)
     4
     """
-    from trawl_ros.estimation.planning.plan import plan_for
+    from trawl_ros.estimation.planning.plan import plan_for, towed_plan
 
     if out is not None:
         empty_folder(Path(out), force=force)
-    plan = plan_for(load_gear(gear), hours=hours, limits=limits, on_progress=on_progress)
+    record = load_gear(gear)
+    plan = plan_for(record, hours=hours, limits=limits, on_progress=on_progress)
+    plan = towed_plan(record, plan, on_progress)
     if out is not None:
         from trawl_ros.estimation.planning.writing import write_plan
 

@@ -88,8 +88,8 @@ def command(
     """Plan a sea trial that determines the boards of GEAR best in a given time.
 
     GEAR is a gear file or the name of a gear of the package. The command prints the expected
-    accuracy, compared with the paper's sweep of warp lengths at one speed. With --out it writes the
-    plan, a scenario for `trawl tow`, and a picture.
+    accuracy, compared with the paper's sweep of warp lengths at one speed, and what a fit of the
+    whole tow will know. With --out it writes the plan, a scenario for `trawl tow`, and a picture.
     """
     from trawl_ros.api import trials
     from trawl_ros.estimation.planning.states import Limits
@@ -151,6 +151,7 @@ def print_plan(plan: 'TrialPlan', units: DisplayUnits = METRIC) -> None:
         numbers = [getattr(trial, kind).well_known.sum() for trial in trials]
         known.add_row(title, '', '', *(f'{number} of {len(QUANTITIES)}' for number in numbers))
     console.print(known)
+    console.print(f'\nThe table counts steady windows only. {_in_motion(plan)}', soft_wrap=True)
     sweep = plan.sweeps[0]
     if sweep.legs:
         console.print(
@@ -167,3 +168,19 @@ def print_plan(plan: 'TrialPlan', units: DisplayUnits = METRIC) -> None:
             f'possible: {reasons}.',
             soft_wrap=True,
         )
+
+
+def _in_motion(plan: 'TrialPlan') -> str:
+    """Return what a fit of the whole tow will know, or why that is not known."""
+    known = plan.in_motion
+    if known is None:
+        return f'What a fit of the whole tow will know cannot be told: {plan.windows_only}.'
+    steady, whole = known.steady.well_known, known.whole.well_known
+    told = (
+        f'By the steady parts of the tow {steady.sum()} of {len(steady)} are well known; with '
+        f'hauling, veering and changes of speed {whole.sum()} of {len(whole)}, and standard '
+        f'deviations are {known.ratio:.2f} times as large.'
+    )
+    if known.left_out:
+        told += f' {known.left_out_minutes:.1f} min do not count: {known.left_out[0].why}.'
+    return told

@@ -5,11 +5,11 @@ taken to be wrong by what changes with the length of the warps, as a diagnosis o
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.core.arrays import FloatArray, IntArray, Slice
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.core.errors import TrawlError
 from trawl_ros.diagnosis.inference.candidates import Candidate
 from trawl_ros.diagnosis.inference.marginal import Marginal
@@ -18,17 +18,12 @@ from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.estimation.fit.error_terms import GROUPS, LONGER, USUAL_LENGTH
 from trawl_ros.estimation.fit.parameters import ParameterVector
-from trawl_ros.estimation.least_squares.information import joined
+from trawl_ros.estimation.motion.expected import expected_rows
 from trawl_ros.estimation.motion.fit_records import MotionOptions
-from trawl_ros.estimation.motion.information import LinearGroup
-from trawl_ros.estimation.motion.nuisances import TowLayout, columns, layout_of
-from trawl_ros.estimation.motion.processes import group_rows
 from trawl_ros.estimation.motion.sizes import LinearData
-from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, without_errors
+from trawl_ros.estimation.motion.towing.inputs import without_errors
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
-from trawl_ros.estimation.motion.towing.lineariser import linearise_tow
 from trawl_ros.estimation.motion.towing.records import MovingTow
-from trawl_ros.estimation.motion.towing.towed_gear import TowedPoint
 from trawl_ros.model.gear_model import GearModel
 
 OPTIONS = MotionOptions()
@@ -97,22 +92,16 @@ def information_in_motion(gear: ExaminedGear, tows: Sequence[MovingTow]) -> Moti
     TrawlError
         If it cannot be towed along any stretch.
     """
-    watched, parts, counted = gear.watched, [], 0.0
-    towed = watched.towed
-    for tow in tows:
-        none = np.zeros(len(INPUT_ERRORS)), np.zeros(tow.inputs.number_of_knots)
-        linear = linearise_tow(towed, tow, TowedPoint(gear.coefficients, 0.0, *none))
-        parts.append(_rows(gear, linear, layout_of(tow, towed, OPTIONS.model)))
-        counted += tow.stretch_s * float(np.sum(np.isfinite(linear.residual).any(axis=1)))
+    towed = gear.watched.towed
+    linear, usual = expected_rows(towed, tows, gear.prior, gear.coefficients, OPTIONS)
+    counted = sum(
+        own.tow.stretch_s * float(np.sum(np.isfinite(own.residual).any(axis=1))) for own in linear
+    )
     if not counted:
         raise TrawlError('the model cannot be towed along any stretch of the tows')
-    layout, number = layout_of(tows[0], towed, OPTIONS.model), len(gear.units)
-    shared = layout.shared + len(GROUPS) + number
-    logs = tuple(log for _, log in parts)
-    data = LinearData(tuple(groups for groups, _ in parts), logs, shared, OPTIONS.times)
-    sizes = OPTIONS.sizes
-    matrix = joined(data.information(sizes), data.precisions(sizes.log), shared).matrix
-    errors, values = np.split(np.arange(shared), [shared - number])
+    data = _with_values(gear, linear, usual)
+    matrix, number = data.joined(OPTIONS.sizes).matrix, len(gear.units)
+    errors, values = np.split(np.arange(data.shared), [data.shared - number])
     mass = np.array([len(gear.prior)])
     return MotionInformation(
         _evidence(matrix, values, errors),
@@ -121,24 +110,27 @@ def information_in_motion(gear: ExaminedGear, tows: Sequence[MovingTow]) -> Moti
     )
 
 
-def _rows(
-    gear: ExaminedGear, linear: LinearisedTow, layout: TowLayout
-) -> tuple[tuple[LinearGroup, ...], Slice]:
-    """Rows of a tow, and the place of the log's errors among its parameters: behind those that all
-    tows share come trends of the model's error and values of effects, which are shared too.
+def _with_values(
+    gear: ExaminedGear, linear: Sequence[LinearisedTow], data: LinearData
+) -> LinearData:
+    """Rows with more columns behind those that all tows share: trends of the model's error, and
+    values of effects, which are shared too.
     """
-    usual = columns(linear, layout, gear.prior.std)
-    longer = np.log(_lengths(linear.tow) / USUAL_LENGTH) / np.log(LONGER)
-    trends = longer[:, None, None] * usual[..., layout.slices['model']]
-    effects = _by_values(gear.watched, linear) * gear.units
-    own, first = (usual, trends, effects), layout.shared
-    every = np.concatenate((own[0][..., :first], *own[1:], own[0][..., first:]), axis=-1)
-    groups = tuple(
-        LinearGroup(rows, every[rows.stretches, rows.channels], np.zeros(len(rows.stretches)))
-        for rows in group_rows(linear.tow, linear.values, linear.tow.noise)
-    )
-    added, log = every.shape[-1] - usual.shape[-1], layout.of_log
-    return groups, slice(log.start + added, log.stop + added)
+    found = []
+    first, added = data.shared, len(GROUPS) + len(gear.units)
+    for groups, tow in zip(data.tows, linear, strict=True):
+        longer = np.log(_lengths(tow.tow) / USUAL_LENGTH) / np.log(LONGER)
+        effects = _by_values(gear.watched, tow) * gear.units
+        wider = []
+        for group in groups:
+            stretches, usual = group.rows.stretches, group.columns
+            trends = longer[stretches, None] * usual[:, first - len(GROUPS) : first]
+            values = effects[stretches, group.rows.channels]
+            every = np.hstack((usual[:, :first], trends, values, usual[:, first:]))
+            wider.append(replace(group, columns=every))
+        found.append(tuple(wider))
+    logs = tuple(slice(log.start + added, log.stop + added) for log in data.logs)
+    return replace(data, tows=tuple(found), logs=logs, shared=first + added)
 
 
 def _lengths(tow: MovingTow) -> FloatArray:

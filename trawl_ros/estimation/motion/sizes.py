@@ -55,6 +55,10 @@ class LinearData:
         """Information of each tow."""
         return [_total(group_information(groups, sizes, self.times)) for groups in self.tows]
 
+    def joined(self, sizes: ErrorSizes) -> Joined:
+        """Information of all tows on the parameters that they share."""
+        return joined(self.information(sizes), self.precisions(sizes.log), self.shared)
+
 
 def _total(parts: Sequence[Information]) -> Information:
     total = parts[0]

@@ -116,6 +116,8 @@ def _draw_quantities(axes: Axes, plan: TrialPlan) -> None:
         ('sweep, all channels', plan.sweeps[0].known, 'D', SWEEP_COLOUR),
         ('plan', plan.trial.known, 'o', PLAN_COLOUR),
     )
+    if plan.in_motion is not None:
+        rows = (*rows, ('plan, whole tow', plan.in_motion.whole, '*', PLAN_COLOUR))
     ratios = np.array([known.ratio for _, known, _, _ in rows])
     axes.hlines(heights, ratios.min(0)[order], ratios.max(0)[order], color=SPREAD_COLOUR, zorder=1)
     for (label, _, mark, colour), ratio in zip(rows, ratios, strict=True):

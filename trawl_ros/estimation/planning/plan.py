@@ -21,6 +21,7 @@ from trawl_ros.estimation.fit.laws import (
 )
 from trawl_ros.estimation.from_gear import board_prior, predictor_for
 from trawl_ros.estimation.planning.duration import Leg, vessel_limits
+from trawl_ros.estimation.planning.in_motion import KnownInMotion, known_in_motion
 from trawl_ros.estimation.planning.limits import limits_of
 from trawl_ros.estimation.planning.search import Designer, DesignProblem
 from trawl_ros.estimation.planning.states import (
@@ -77,6 +78,11 @@ class TrialPlan:
         Quantities of the laws before any tow.
     sweeps
         The paper's sweep in the same time, with all planned channels and with the paper's.
+    in_motion
+        What a fit of the whole tow will know; None where `towed_plan` was not called, or the model
+        cannot be towed along any of the plan.
+    windows_only
+        Why it cannot; '' if it can.
 
     Examples
     --------
@@ -96,6 +102,8 @@ class TrialPlan:
     limits: Mapping[str, str]
     before: LawQuantities
     sweeps: tuple[SweepTrial, ...]
+    in_motion: KnownInMotion | None = None
+    windows_only: str = ''
 
 
 def plan_for(
@@ -182,6 +190,23 @@ def plan_for(
         before=problem.quantities(np.diag(prior.std**2)),
         sweeps=tuple(trials[1:]),
     )
+
+
+def towed_plan(gear: GearRecord, plan: TrialPlan, on_progress: OnProgress = ignore) -> TrialPlan:
+    """Return a plan with what a fit of its whole tow will know, or why that is not known.
+
+    Parameters
+    ----------
+    gear, plan
+        Gear, and what `plan_for` returned for it.
+    on_progress
+        Called after each stretch that was towed.
+    """
+    try:
+        known = known_in_motion(gear, plan.trial, plan.problem, on_progress)
+    except TrawlError as reason:
+        return replace(plan, windows_only=str(reason))
+    return replace(plan, in_motion=known)
 
 
 def problem_for(

@@ -81,16 +81,31 @@ def plan_record(plan: TrialPlan) -> dict[str, object]:
                     for trial in (plan.trial, *plan.sweeps)
                 },
                 'well_known': bool(plan.trial.known.well_known[index]),
+                **{
+                    f'sd_of_span_after_plan_by_{part}': finite(known.ratio[index])
+                    for part, known in _in_motion(plan).items()
+                },
                 'limited_by': plan.limits.get(name),
             }
             for index, name in enumerate(QUANTITIES)
         },
+        **{
+            f'well_known_by_{part}': int(known.well_known.sum())
+            for part, known in _in_motion(plan).items()
+        },
+        'minutes_left_out': None if plan.in_motion is None else plan.in_motion.left_out_minutes,
+        'windows_only': plan.windows_only or None,
         'trials': [_trial(trial) for trial in (plan.trial, *plan.sweeps)],
         'refused': [
             {**_manoeuvre(refused.manoeuvre), 'reason': refused.reason}
             for refused in plan.choice.refused
         ],
     }
+
+
+def _in_motion(plan: TrialPlan) -> dict[str, LawQuantities]:
+    known = plan.in_motion
+    return {} if known is None else {'steady_parts': known.steady, 'whole_tow': known.whole}
 
 
 def _key(trial: SweepTrial) -> str:
