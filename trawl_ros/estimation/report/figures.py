@@ -32,8 +32,8 @@ def _fit(report: Report) -> list[Drawing]:
     return [
         Drawing(
             'held_out',
-            'Error of each channel: fitted, and predicted for what was left out of the fit. '
-            'Dots are single tows; the line is what the paper has on the points it fitted.',
+            'Error of each channel: at rest in the windows, fitted; and of what was left out of '
+            'the fit. Dots are single tows; the line is the fit of the paper to its own points.',
             held_out_figure(report), FIT,
         ),
         Drawing(

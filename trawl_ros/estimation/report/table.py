@@ -36,7 +36,7 @@ def coefficient_table(report: Report) -> Table:
 
 def channel_table(report: Report, units: DisplayUnits = METRIC) -> Table:
     """Mean absolute error over mean measured value per channel: before, after, left out."""
-    table = Table(title='Error per channel')
+    table = Table(title='Error per channel: at rest in the windows before and after, and left out')
     table.add_column('', style='bold')
     left_out = 'tows held out' if report.held_out.by == 'tow' else 'states held out'
     for heading in ('mean measured', 'before', 'after', left_out):
