@@ -18,7 +18,7 @@ from trawl_ros.estimation.motion.fit_records import MotionOptions  # noqa: E402
 from trawl_ros.gear.load import load_gear  # noqa: E402
 from trawl_ros.nodes.bag_player import BagPlayer  # noqa: E402
 from trawl_ros.nodes.identification_node import FINISH, IdentificationNode  # noqa: E402
-from trawl_ros.nodes.workers.motion_learner import BEFORE, ENDED, MotionLearner  # noqa: E402
+from trawl_ros.nodes.workers.motion_learner import AT_END, BEFORE, ENDED, MotionLearner  # noqa: E402
 from trawl_ros.records.topics import NAMESPACE  # noqa: E402
 
 pytestmark = pytest.mark.ros
@@ -175,8 +175,19 @@ def test_without_its_prior_all_of_the_tow_is_not_learned_from_and_that_is_told(r
     graph.until(lambda: 'the prior of the gear file' in listener.report('motion').message)
 
 
-def test_where_windows_alone_are_wanted_nothing_is_said_of_motion(replay, bag):
-    graph, _, listener = replay({'bag': str(bag), 'end': 5.0}, motion=False)
-    graph.until(lambda: listener.report() is not None)
-    assert listener.report('motion') is None
-    assert 'all of the tow' not in listener.status
+def test_without_motion_the_steady_parts_are_fitted_at_the_end_as_identify_does(
+    replay, bag, coarse_gear
+):
+    graph, _, listener = replay({'bag': str(bag), 'rate': 0.0}, motion=False)
+    assert AT_END in listener.report('motion').message
+    assert listener.status['coefficients'].values['learned from'] == 'steady windows'
+    number = len(listener.covariances)
+    answer = graph.call(FINISH)
+    assert answer.success, answer.message
+    graph.until(lambda: len(listener.covariances) > number)
+    assert listener.status['coefficients'].values['learned from'] == 'steady parts'
+    offline = identify([bag], gear=str(coarse_gear), motion=False)
+    assert offline.chain is not None, offline.chain_refused
+    values, covariance = offline.estimate.values, offline.estimate.covariance
+    np.testing.assert_allclose(listener.estimates[-1], values, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(listener.covariances[-1], covariance, rtol=0, atol=1e-9)

@@ -153,15 +153,19 @@ class LiveMotion:
         return '' if tows else '; '.join(refused)
 
     def finish(
-        self, identification: Identification | None, on_progress: OnProgress = ignore
+        self,
+        identification: Identification | None,
+        on_progress: OnProgress = ignore,
+        *,
+        steady: bool = False,
     ) -> MotionOutcome:
-        """Fit the whole tow as if it were read from a bag.
+        """Fit the tow as if it were read from a bag.
 
         Parameters
         ----------
         identification
             At rest, of the same samples; None where there is no steady window.
-        on_progress
+        on_progress, steady
             As of `fit_tows`.
 
         Raises
@@ -173,8 +177,9 @@ class LiveMotion:
         if not tows:
             raise TrawlError('; '.join(refused))
         return fit_tows(
-            self._gear, identification, tows, [0] * len(tows), refused, on_progress, net=self._net
-        )
+            self._gear, identification, tows, [0] * len(tows), refused, on_progress,
+            net=self._net, steady=steady,
+        )  # fmt: skip
 
     def _tows(self, until_ns: int | None) -> tuple[list[MovingTow], list[str]]:
         tows: list[MovingTow] = []

@@ -94,8 +94,8 @@ class IdentificationNode(TrawlNode):
              'number is put behind its name; none if empty.'),
         Text('state', '', 'File that takes the state after each window, and from which a node that '
              'is started again goes on; none if empty.'),
-        Flag('motion', True, 'True to fit the whole tow, hauling and veering too, '
-             'as well as its steady windows.'),
+        Flag('motion', True, 'True to fit the whole tow, hauling and veering too, while it goes '
+             'on; otherwise its steady parts are fitted at the end.'),
         Text('truth', '', 'Scenario that made the data, where they are simulated: its coefficients '
              'are compared with the estimate in the report.'),
         *ADVICE_SPECS,
@@ -159,13 +159,14 @@ class IdentificationNode(TrawlNode):
             self._advised,
         )
 
-    def _learning(self, identification: Identification) -> MotionLearner | None:
-        """Learning from the whole tow; None where that is not wanted."""
-        if not self.parameters['motion']:
-            return None
-        prior, net = self.parameters['prior'], self.parameters['net']
-        resumed = bool(identification.estimator.windows)
-        return MotionLearner(self._gear, prior=prior, net=net, resumed=resumed)
+    def _learning(self, identification: Identification) -> MotionLearner:
+        return MotionLearner(
+            self._gear,
+            prior=self.parameters['prior'],
+            net=self.parameters['net'],
+            resumed=bool(identification.estimator.windows),
+            steady=not self.parameters['motion'],
+        )
 
     def _identification(self) -> Identification:
         fresh = identification_for(
@@ -197,7 +198,7 @@ class IdentificationNode(TrawlNode):
         }
         return [
             self._about_estimate(outcome, values),
-            *([] if self._motion is None else [motion_diagnosis(self._motion.knowledge)]),
+            motion_diagnosis(self._motion.knowledge),
             *self._about_state(outcome),
             *self._about_advice(),
         ]

@@ -13,7 +13,7 @@ from trawl_ros.messages.estimates import ChannelInnovation
 from trawl_ros.nodes.workers.motion_learner import MotionKnowledge
 from trawl_ros.nodes.workers.outcome import EstimatorOutcome
 
-WINDOWS, WHOLE = 'steady windows', 'all of the tow'
+WINDOWS, STEADY, WHOLE = 'steady windows', 'steady parts', 'all of the tow'
 """Words for where an estimate is from."""
 
 
@@ -82,7 +82,12 @@ def coefficients_status(outcome: EstimatorOutcome) -> Status:
         values |= {'learned from': WINDOWS}
         if estimate is outcome.motion.estimate:
             by = f'{outcome.motion.minutes:.1f} min of tow'
-            values |= {'learned from': WHOLE, 'minutes': f'{outcome.motion.minutes:.1f}'}
+            fitted = outcome.motion.outcome
+            whole = fitted is None or not fitted.steady_only
+            values |= {
+                'learned from': WHOLE if whole else STEADY,
+                'minutes': f'{outcome.motion.minutes:.1f}',
+            }
     message = (
         f'{sum(estimate.determined)} of {len(estimate.names)} coefficients determined by '
         f'{by}; {estimate.reason}'

@@ -1,6 +1,6 @@
 # Copyright the trawl_ros developers
 # SPDX-License-Identifier: Apache-2.0
-"""Learning from the whole tow as well as its steady windows; failures are reported."""
+"""Learning from a tow as a chain of parts as well as its steady windows; failures are reported."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from trawl_ros.estimation.motion.outcome import MotionOutcome
 
 ENDED = 'the node ended before the whole tow was fitted'
+AT_END = 'the steady parts are fitted at the end of the tow'
 BEFORE = 'the tow before the restart of the node is known by its steady windows alone'
 
 
@@ -64,7 +65,7 @@ class MotionKnowledge:
 
 
 class MotionLearner:
-    """Learning from the whole tow, by one thread.
+    """Learning from the whole tow, or at its end from its steady parts, by one thread.
 
     Parameters
     ----------
@@ -74,6 +75,8 @@ class MotionLearner:
         True if the prior takes part; if drag and weight of the net are estimated along.
     resumed
         True where the windows are those of a saved state.
+    steady
+        True if the steady parts alone are fitted, at the end.
 
     Attributes
     ----------
@@ -84,9 +87,15 @@ class MotionLearner:
     """
 
     def __init__(
-        self, gear: GearRecord, *, prior: bool = True, net: bool = False, resumed: bool = False
+        self,
+        gear: GearRecord,
+        *,
+        prior: bool = True,
+        net: bool = False,
+        resumed: bool = False,
+        steady: bool = False,
     ) -> None:
-        self._gear, self._prior, self._net = gear, prior, net
+        self._gear, self._prior, self._net, self._steady = gear, prior, net, steady
         self._live: LiveMotion | None = None
         self._begun = False
         self._revision = 0
@@ -105,7 +114,7 @@ class MotionLearner:
             self._begin()
         if self._live is None:
             return False
-        if self.knowledge.failed:
+        if self.knowledge.failed or self._steady:
             self._live.record(sample)
             return False
         try:
@@ -148,7 +157,7 @@ class MotionLearner:
         if live is None or refused:
             raise TrawlError(refused)
         try:
-            outcome = live.finish(identification, self._show)
+            outcome = live.finish(identification, self._show, steady=self._steady)
         except Exception as reason:
             failed = not isinstance(reason, TrawlError)
             sentence = sentence_of(reason)
@@ -176,6 +185,8 @@ class MotionLearner:
             self._know(why_not=reason)
         else:
             self._live = LiveMotion(self._gear, net=self._net)
+            if self._steady:
+                self._know(why_not=AT_END)
 
     def _show(self, progress: WorkProgress) -> None:
         self._know(why_not=f'{progress.stage}: {progress.detail}')
