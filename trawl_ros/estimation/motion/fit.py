@@ -22,8 +22,9 @@ from trawl_ros.records.channels import INPUTS
 NEAR = 0.3
 """Part of every std within which a fit has converged where its step lowers no cost."""
 
-MOST_STANDING_STARTS = 3
-"""Number of starts at which boards balance as they are seen to, of a fit that did not converge."""
+MOST_STANDING_STARTS = 2
+"""Number of starts at which boards balance as they are seen to, of a fit of steady parts, or one
+without a start, that did not converge."""
 
 
 def fit_motion(
@@ -52,7 +53,9 @@ def fit_motion(
     layouts = tuple(layout_of(tow, gear, options.model) for tow in tows)
     here = [np.zeros(len(layout)) for layout in layouts] if start is None else list(start)
     found = _fit_from(here, gear, tows, layouts, prior, options, on_stretch)
-    if found.converged:
+    # What steady parts have found already is no better known from one attitude.
+    known = start is not None and not all(tow.steady_only for tow in tows)
+    if found.converged or known:
         return found
     for values in islice(_standing(gear, prior, tows), MOST_STANDING_STARTS):
         here = place_at(values, prior, layouts)
