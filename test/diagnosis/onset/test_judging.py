@@ -8,14 +8,13 @@ from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
 from trawl_ros.effects.registry import catalogue
 
 TABLE = candidate_table({'attitude_mount': catalogue()['attitude_mount']})
-NAMES = [candidate.name for candidate in TABLE.candidates]
+CANDIDATES = {candidate.name: candidate for candidate in TABLE.candidates}
 
 
 def evidence(name, ratio):
-    number = NAMES.index(name)
-    values = len(TABLE.candidates[number].columns)
+    values = len(CANDIDATES[name].columns)
     return OnsetEvidence(
-        number, 4, ratio, 20.0, np.zeros(values), 1e-6 * np.eye(values), np.array([4])
+        CANDIDATES[name], 4, ratio, 20.0, np.zeros(values), 1e-6 * np.eye(values), np.array([4])
     )
 
 

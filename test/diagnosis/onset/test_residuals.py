@@ -7,7 +7,7 @@ import pytest
 
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
-from trawl_ros.diagnosis.onset.part import LIVE, LogErrors
+from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.diagnosis.onset.residuals import (
     MODEL_FACTOR_IN_MANOEUVRES,
     PASSING_MODEL_FACTOR,
@@ -62,7 +62,7 @@ def variances(gear, linear):
         none = np.zeros((STRETCHES, K, 0)) if absorbed is None else absorbed
         rows = residual_rows(
             gear, linear, errors.belief(layout_of(linear.tow, gear, 1.0)), errors,
-            log_factor=1.0, unrest=np.full(STRETCHES, unrest), absorbed=none,
+            log_density=1.0, unrest=np.full(STRETCHES, unrest), absorbed=none,
         )  # fmt: skip
         found = np.zeros((STRETCHES, K))
         found[rows.stretches, rows.channels] = np.diag(rows.covariance)
@@ -88,11 +88,10 @@ def test_less_than_readings_scatter_changes_nothing(variances):
 
 
 def test_a_log_that_is_worse_than_its_readings_show_is_as_bad_as_was_found():
-    log = LogErrors(std=0.02, slow_std=0.01, period_s=1.0)
     for told, factor in (
         ({}, 1.0), ({'densities': {'speed': 0.06}}, 3.0), ({'sizes': ErrorSizes(log=4.0)}, 4.0),
     ):  # fmt: skip
-        found = ErrorModel(replace(KNOWN, **told), 1.0).log_factor(log)
+        found = ErrorModel(replace(KNOWN, **told), 1.0).log_factor(density=0.02)
         assert found == pytest.approx(factor)
 
 
@@ -102,7 +101,7 @@ def test_in_a_manoeuvre_the_model_is_less_exact(variances):
     moving = variances(KNOWN, unrest=1.0) - variances(without)
     factor = MODEL_FACTOR_IN_MANOEUVRES**2 + PASSING_MODEL_FACTOR**2
     np.testing.assert_allclose(moving, factor * still, rtol=1e-6)
-    unrest = unrest_of([(False, False), (True, False), (False, False), (False, True)])
+    unrest = unrest_of([False, True, False, True])
     np.testing.assert_allclose(unrest, [0.0, 1.0, np.exp(-LIVE.stretch_s / UNREST_S), 1.0])
 
 

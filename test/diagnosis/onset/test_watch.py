@@ -40,7 +40,7 @@ def far_off(onset_gear):
 def settings(onset_gear, far_off):
     table = candidate_table(FEW)
     gear = WatchedGear(build_model(onset_gear), effects_of(onset_gear), table.at_one_hour())
-    return WatchSettings(gear, build_water(onset_gear), table, ErrorModel(far_off, 1.2), 20)
+    return WatchSettings(gear, build_water(onset_gear), table, ErrorModel(far_off), 20)
 
 
 def watched(watch, samples):

@@ -73,7 +73,7 @@ class Chain:
 
     Parameters
     ----------
-    belief
+    before
         Distribution of the lasting parameters before the first stretch.
 
     Attributes
@@ -82,8 +82,8 @@ class Chain:
         All rows of L⁻¹ y.
     """
 
-    def __init__(self, belief: Belief) -> None:
-        self._belief, size = belief, len(belief.mean)
+    def __init__(self, before: Belief) -> None:
+        self.before, size = before, len(before.mean)
         self._root, self._columns = np.zeros((0, 0)), np.zeros((0, size))
         self.white = np.zeros(0)
 
@@ -116,7 +116,7 @@ class Chain:
 
     def belief(self, rows: int | None = None) -> Belief:
         """Return the belief after the first rows, or after all."""
-        columns, before = self._columns[:rows], self._belief
+        columns, before = self._columns[:rows], self.before
         # Posterior in units of the root: mean Cᵀ w and covariance 1 - Cᵀ C, whitened columns C.
         left = np.eye(len(before.mean)) - columns.T @ columns
         mean = before.mean + before.root @ (columns.T @ self.white[:rows])

@@ -80,7 +80,7 @@ class Finding:
 
     def record(self) -> dict[str, object]:
         """Record for JSON."""
-        return asdict(self) | {'alike': list(self.alike)}
+        return asdict(self)
 
     def sentence(self) -> str:
         """Finding in one sentence."""

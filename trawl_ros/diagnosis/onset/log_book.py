@@ -49,11 +49,9 @@ class LogBook:
     def __init__(self, path: Path) -> None:
         self.path = path
         _checked(self.older)
-        data = _checked(path)
-        whole = data.rfind(b'\n') + 1
-        if whole < len(data):
-            os.truncate(path, whole)
-        appending(path).close()
+        whole = _checked(path).rfind(b'\n') + 1
+        with appending(path) as file:
+            file.truncate(whole)
 
     @property
     def older(self) -> Path:
@@ -84,22 +82,18 @@ class LogBook:
         TrawlError
             If it cannot be written.
         """
-        line: dict[str, object] = {
-            'time': datetime.now(UTC).isoformat(timespec='milliseconds'),
-            'event': event,
-            'stamp_ns': stamp,
-            'who': who,
-        }
+        now = datetime.now(UTC).isoformat(timespec='milliseconds')
+        line: dict[str, object] = {'time': now, 'event': event, 'stamp_ns': stamp, 'who': who}
         if to:
-            line['to'] = list(to[:MOST_TOLD])
+            line['to'] = to[:MOST_TOLD]
         if finding is not None:
-            line |= {'finding': finding.number, 'sentence': finding.sentence()}
-            line |= {'onset_ns': finding.onset_ns, 'name': finding.name}
-            line['alike'] = list(finding.alike)
-        text = json.dumps(line, ensure_ascii=False)
+            line |= {
+                'finding': finding.number, 'sentence': finding.sentence(),
+                'onset_ns': finding.onset_ns, 'name': finding.name, 'alike': finding.alike,
+            }  # fmt: skip
         self._set_aside()
         with appending(self.path) as file:
-            file.write(f'{text}\n')
+            file.write(json.dumps(line, ensure_ascii=False) + '\n')
             file.flush()
             os.fsync(file.fileno())
 
@@ -115,10 +109,9 @@ class LogBook:
 
     def _set_aside(self) -> None:
         try:
-            if not self.path.exists() or self.path.stat().st_size <= MOST_BYTES:
-                return
-            _checked(self.older)
-            self.path.replace(self.older)
+            if self.path.exists() and self.path.stat().st_size > MOST_BYTES:
+                _checked(self.older)
+                self.path.replace(self.older)
         except OSError as reason:
             raise TrawlError(f'{self.path}: cannot be written ({reason.strerror})') from reason
 

@@ -64,8 +64,6 @@ class OnsetOptions:
         Stretches since its onset after which a finding stays as it is.
     limit
         Rarity beyond which a finding is raised: `MARGIN` times `WHITE_LIMIT`.
-    inflation
-        Factor on the std of errors that are stated, as for steady windows.
     again, longest
         Stretches that are watched again with other boards, at least where the tow is that long;
         and after which the watch begins with these, for its memory grows with their square.
@@ -84,7 +82,6 @@ class OnsetOptions:
     window: int = 60
     settled: int = 50
     limit: float = round(MARGIN * WHITE_LIMIT, 1)
-    inflation: float = 1.2
     again: int = 60
     longest: int = 180
     pace: int = 4
@@ -143,7 +140,7 @@ class OnsetMonitor:
         self._usual = prior.start
         known = np.sqrt(np.diag(self._known.covariance)) / prior.std
         learning = own.learning if np.exp(np.mean(np.log(known))) > own.poorly_known else 0
-        errors = ErrorModel(self._known, own.inflation)
+        errors = ErrorModel(self._known)
         self._settings = WatchSettings(
             watched, build_water(gear), self.table, errors, own.window, learning
         )
@@ -157,10 +154,9 @@ class OnsetMonitor:
         self._watch = Watch(self._settings, WatchStart(self._known.values))
         self._samples: deque[Sample] = deque()
         self._next: Watch | None = None
-        self._tried, self._judged = 0, False
         self._rarity, self._part, self._not_before_ns = 0.0, 1.0, 0
         self._owed = self._confirmed = False
-        self.watched = self.unwatched = 0
+        self._tried = self.watched = self.unwatched = 0
         self.why_not, self.withheld = JUST_BEGUN, ''
 
     def feed(self, sample: Sample) -> list[Finding]:
@@ -196,11 +192,8 @@ class OnsetMonitor:
     def _take(self) -> Iterator[Finding]:
         stretch = self._watch.advance()
         self.why_not, self.withheld, self._rarity = stretch.why_not, '', stretch.rarity
-        if stretch.why_not:
-            self.unwatched += 1
-        else:
-            self.watched += 1
-            self._judged = True
+        self.unwatched += bool(stretch.why_not)
+        self.watched += not stretch.why_not
         self._on_stretch(stretch)
         if stretch.evidence:
             yield from self._judge(stretch.end_ns, stretch.evidence)
@@ -227,12 +220,12 @@ class OnsetMonitor:
         watch, begin_ns = self._watch, self._watch.part.end_ns
         start = replace(watch.start, belief=watch.belief(), compared=watch.compared)
         way, turn = self._usual - self._known.values, self._tried % (len(NEARER) + 1)
-        if watch.refused and not self._judged and np.any(way):
+        if watch.refused and not self.watched and np.any(way):
             self._tried += 1
-            boards = self._known.values
+            start = replace(start, coefficients=self._known.values)
             if turn < len(NEARER):
-                boards, begin_ns = boards + NEARER[turn] * way, watch.part.begin_ns(0)
-            start = replace(start, coefficients=boards)
+                start = replace(start, coefficients=self._known.values + NEARER[turn] * way)
+                begin_ns = watch.part.begin_ns(0)
         self._watch, self._next = self._watch_from(begin_ns, start), None
 
     def _catch_up(self) -> None:
@@ -243,30 +236,28 @@ class OnsetMonitor:
             return
         if self._next is None:
             self._next = self._again()
-        other, watch, limit = self._next, self._watch, self.options.limit
+        other, own = self._next, self.options
         if other is None:
             return
-        hurry = watch.learns or self._rarity > limit
-        stretch = other.advance(self.options.hurried_pace if hurry else self.options.pace)
+        hurry = self._watch.learns or self._rarity > own.limit
+        stretch = other.advance(own.hurried_pace if hurry else own.pace)
         if other.lost:
             self._refuse()
         elif len(other) >= other.part.number:
             # Of boards a part of the way to those as learned the same evidence proves nothing.
-            self._confirmed = stretch.rarity > limit and self._part == 1.0
+            self._confirmed = stretch.rarity > own.limit and self._part == 1.0
             self._compare(other)
 
     def _again(self) -> Watch | None:
         """Return a watch with the boards as they were learned; None without a reason for one."""
-        watch, learned, own = self._watch, self._watch.learned, self.options
+        watch, own = self._watch, self.options
         far = watch.away >= CLOSE and watch.part.end_ns >= self._not_before_ns
-        if learned is None or not (far or len(watch) > own.longest):
+        if not (far or len(watch) > own.longest):
             return None
         first = max(len(watch) - own.again - SETTLING, 0)
-        at = watch.start.coefficients
-        start = replace(
-            watch.start, coefficients=at + self._part * (learned - at),
-            belief=watch.belief(first + SETTLING),
-        )  # fmt: skip
+        at, belief = watch.start.coefficients, watch.belief(first + SETTLING)
+        there = at + self._part * (watch.learned - at)
+        start = replace(watch.start, coefficients=there, belief=belief)
         return self._watch_from(watch.part.begin_ns(first), start)
 
     def _refuse(self) -> None:
@@ -297,11 +288,8 @@ class OnsetMonitor:
         if before is None:
             yield from self._raise(now_ns, evidence)
             return
-        if evidence[0].rarity < 0.5 * limit:
-            yield self._put(replace(before, state='withdrawn', updated_ns=now_ns))
-            return
         found = finding(self.table, before.number, now_ns, evidence, before.raised_ns, limit)
-        if found.onset_ns >= before.raised_ns:
+        if evidence[0].rarity < 0.5 * limit or found.onset_ns >= before.raised_ns:
             # An onset after the finding was raised is that of another one.
             yield self._put(replace(before, state='withdrawn', updated_ns=now_ns))
             yield from self._raise(now_ns, evidence)
@@ -325,7 +313,7 @@ class OnsetMonitor:
 
     def _take_along(self, found: Finding) -> None:
         """Take what was found as present, and watch for what begins beside it."""
-        (candidate,) = (one for one in self.table.candidates if one.name == found.name)
-        absorbed = [Absorbed(column, found.onset_ns) for column in candidate.columns]
+        (columns,) = (one.columns for one in self.table.candidates if one.name == found.name)
+        absorbed = [Absorbed(column, found.onset_ns) for column in columns]
         self._watch.take_along(absorbed, found.updated_ns)
         self._next = None

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import chdtri, gammaln, log_ndtr, logsumexp, xlogy
 
 from trawl_ros.core.arrays import FloatArray, IntArray, Slice
-from trawl_ros.diagnosis.onset.candidates import CandidateTable
+from trawl_ros.diagnosis.onset.candidates import CandidateTable, OnsetCandidate
 from trawl_ros.diagnosis.onset.chain import Link
 
 FEWEST = 2
@@ -36,7 +36,7 @@ class OnsetEvidence:
     Attributes
     ----------
     candidate
-        Its number.
+        The candidate.
     age
         Stretches since the likeliest onset, that in which it began among them.
     ratio
@@ -50,7 +50,7 @@ class OnsetEvidence:
         Of the onsets that 95 % of the likelihood do not exclude.
     """
 
-    candidate: int
+    candidate: OnsetCandidate
     age: int
     ratio: float
     rarity: float
@@ -133,33 +133,27 @@ class RatioBank:
 
     def best(self) -> list[OnsetEvidence]:
         """Evidence for each candidate at its likeliest onset; the rarest first."""
-        ages = np.arange(FEWEST - 1, self.known)
-        if not len(ages):
+        if self.known < FEWEST:
             return []
-        found = []
-        scale = self.table.scale
-        low, high = self.table.reach
-        for number, candidate in enumerate(self.table.candidates):
-            own = list(candidate.columns)
-            squares = self.squares[ages][:, own][:, :, own]
-            informed = squares + np.diag(scale[own] ** -2.0)
-            products = self.products[ages][:, own]
-            values = np.linalg.solve(informed, products[..., None])[..., 0]
-            values = np.clip(values, low[own], high[own])
-            ratios = 2.0 * np.einsum('wp,wp->w', values, products) - np.einsum(
-                'wp,wpq,wq->w', values, informed, values
-            )
-            best = int(np.argmax(ratios))
-            near = ages[ratios >= ratios[best] - NEAR]
-            worth = ratios - 2.0 * np.log(10.0) * self._asked[ages]
-            found.append(
-                OnsetEvidence(
-                    number, int(ages[best]), float(ratios[best]),
-                    rarity(np.max(worth), len(own)),
-                    values[best], np.linalg.inv(informed[best]), near,
-                )
-            )  # fmt: skip
+        ages = np.arange(FEWEST - 1, self.known)
+        found = (self._evidence(candidate, ages) for candidate in self.table.candidates)
         return sorted(found, key=lambda one: -one.rarity)
+
+    def _evidence(self, candidate: OnsetCandidate, ages: IntArray) -> OnsetEvidence:
+        """Return the evidence for a candidate at the likeliest of some onsets."""
+        own = list(candidate.columns)
+        products, squares = self.products[ages][:, own], self.squares[ages][:, own][:, :, own]
+        informed = squares + np.diag(self.table.scale[own] ** -2.0)
+        values = np.linalg.solve(informed, products[..., None])[..., 0]
+        values = np.clip(values, *self.table.reach[:, own])
+        left = 2.0 * products - np.einsum('wpq,wq->wp', informed, values)
+        ratios = np.einsum('wp,wp->w', values, left)
+        best = int(np.argmax(ratios))
+        worth = ratios - 2.0 * np.log(10.0) * self._asked[ages]
+        return OnsetEvidence(
+            candidate, int(ages[best]), float(ratios[best]), rarity(np.max(worth), len(own)),
+            values[best], np.linalg.inv(informed[best]), ages[ratios >= ratios[best] - NEAR],
+        )  # fmt: skip
 
 
 def rarity(ratio: float, freedom: int) -> float:

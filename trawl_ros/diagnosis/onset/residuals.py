@@ -9,6 +9,7 @@ way and the slowest motions at the beginning of a part are in the covariance.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -17,7 +18,7 @@ from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.chain import Belief
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
-from trawl_ros.diagnosis.onset.part import LIVE, LogErrors
+from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.estimation.motion.nuisances import TowLayout, columns, layout_of
 from trawl_ros.estimation.motion.processes import ErrorTimes, group_rows
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
@@ -44,11 +45,11 @@ class ErrorModel:
     known
         Knowledge of the boards and of the sizes of errors.
     inflation
-        Factor on the std of all errors that are stated.
+        Factor on the std of all errors that are stated, as for steady windows.
     """
 
     known: Knowledge
-    inflation: float
+    inflation: float = 1.2
 
     def belief(self, layout: TowLayout) -> Belief:
         """Return the belief of the lasting parameters before anything is watched."""
@@ -62,10 +63,9 @@ class ErrorModel:
         densities = np.array([self.known.densities.get(name, 0.0) for name in WATCHED])
         return np.asarray(np.maximum(noise, densities / np.sqrt(LIVE.stretch_s)), np.float64)
 
-    def log_factor(self, log: LogErrors | None) -> float:
-        """Return the factor on the errors that a log's readings show."""
-        known = self.known.densities.get('speed', 0.0)
-        return max(self.known.sizes.log, known / log.density if log else 0.0)
+    def log_factor(self, density: float) -> float:
+        """Return the factor on the errors of a log whose readings show a noise density."""
+        return max(self.known.sizes.log, self.known.densities.get('speed', 0.0) / density)
 
 
 @dataclass(frozen=True)
@@ -93,12 +93,13 @@ class ResidualRows:
     columns: FloatArray
     covariance: FloatArray
 
-    def of(self, own: BoolArray) -> 'ResidualRows':
-        """Return some rows (n,), with their covariance with all rows before."""
-        rows = np.flatnonzero(own)
+    def of(self, stretch: int) -> 'ResidualRows':
+        """Return the rows of a stretch, with their covariance with all rows before."""
+        first, last = np.searchsorted(self.stretches, (stretch, stretch + 1))
+        own = slice(first, last)
         return ResidualRows(
-            self.stretches[rows], self.channels[rows], self.model[rows], self.residual[rows],
-            self.columns[rows], self.covariance[rows, : rows[-1] + 1],
+            self.stretches[own], self.channels[own], self.model[own], self.residual[own],
+            self.columns[own], self.covariance[own, :last],
         )  # fmt: skip
 
 
@@ -115,7 +116,7 @@ def residual_rows(
     belief: Belief,
     errors: ErrorModel,
     *,
-    log_factor: float,
+    log_density: float,
     unrest: FloatArray,
     absorbed: FloatArray,
 ) -> ResidualRows:
@@ -129,51 +130,44 @@ def residual_rows(
         Distribution of the lasting parameters; coefficients as departures from the known ones.
     errors
         Errors of the rows.
-    log_factor
-        Factor on the log's errors.
+    log_density
+        Noise density (m/s/√Hz) that the log's readings show.
     unrest : (n,) array
         1 in stretches of a manoeuvre, from which it fades.
     absorbed : (n, k, a) array
         Signatures of what has been found before, each in units of its prior std.
     """
-    tow, layout = linear.tow, layout_of(linear.tow, gear, 1.0)
-    known, sizes = errors.known, errors.known.sizes.tempered(errors.inflation)
-    groups = group_rows(tow, linear.values, errors.noise(tow.noise))
-    stretches, channels, model = (
-        np.concatenate([getattr(own, name) for own in groups])
-        for name in ('stretches', 'channels', 'model')
-    )
+    tow, layout, known = linear.tow, layout_of(linear.tow, gear, 1.0), errors.known
+    sizes = known.sizes.tempered(errors.inflation)
     more = 1.0 + (MODEL_FACTOR_IN_MANOEUVRES - 1.0) * unrest
-    passing_model = PASSING_MODEL_FACTOR * unrest ** (UNREST_S / PASSING_S)
+    passing = PASSING_MODEL_FACTOR * unrest ** (UNREST_S / PASSING_S)
+    groups = group_rows(tow, linear.values, errors.noise(tow.noise))
     wider = [
         replace(
             own, model=more[own.stretches] * own.model,
-            noise=np.hypot(own.noise, passing_model[own.stretches] * own.model),
+            noise=np.hypot(own.noise, passing[own.stretches] * own.model),
         )
         for own in groups
     ]  # fmt: skip
     of_errors = block_diag(
         *(own.covariance(sizes.of_group(n), ErrorTimes()) for n, own in enumerate(wider))
     )
-    order = np.argsort(stretches, kind='stable')
-    place = stretches[order], channels[order]
+    rows = np.hstack([(own.stretches, own.channels) for own in groups])
+    order = np.argsort(rows[0], kind='stable')
+    place, model = tuple(rows[:, order]), np.hstack([own.model for own in groups])[order]
     slopes = columns(linear, layout, np.ones(len(known.values)))[place]
-    lasting = lasting_flags(layout)
-    std = np.full(len(layout), errors.inflation)
-    std[layout.of_log] *= log_factor
-    passing = np.hstack(((slopes * std)[:, ~lasting], absorbed[place]))
+    lasting, std = lasting_flags(layout), np.full(len(layout), errors.inflation)
+    std[layout.of_log] *= errors.log_factor(log_density)
     own_columns = slopes[:, lasting] @ belief.root
-    everything = np.hstack((own_columns, passing))
+    everything = np.hstack((own_columns, (slopes * std)[:, ~lasting], absorbed[place]))
     shift = linear.by['coefficients'] @ (linear.point.coefficients - known.values)
     residual = (linear.residual + shift)[place] - slopes[:, lasting] @ belief.mean
     covariance = of_errors[np.ix_(order, order)] + everything @ everything.T
-    return ResidualRows(*place, model[order], residual, own_columns, covariance)
+    return ResidualRows(*place, model, residual, own_columns, covariance)
 
 
-def unrest_of(manoeuvres: Sequence[tuple[bool, bool]]) -> FloatArray:
+def unrest_of(manoeuvres: Sequence[bool]) -> FloatArray:
     """Return the unrest (n,) of stretches: 1 in a manoeuvre, from which it fades."""
-    found, fading = np.zeros(len(manoeuvres)), np.exp(-LIVE.stretch_s / UNREST_S)
-    for stretch, moves in enumerate(manoeuvres):
-        before = found[stretch - 1] if stretch else 0.0
-        found[stretch] = 1.0 if any(moves) else fading * before
-    return found
+    fading = np.exp(-LIVE.stretch_s / UNREST_S)
+    fade = accumulate(map(float, manoeuvres), lambda unrest, moves: moves or fading * unrest)
+    return np.array(list(fade))

@@ -57,8 +57,6 @@ class WatchedStretch:
         Its end.
     innovations : (k,) array
         Innovations of the watched channels, NaN where there are none.
-    std : (k,) array
-        Std of their residuals, given all stretches before.
     marks : (w, r, p) array
         What the candidates would leave in the innovations, by age; None without innovations.
     evidence
@@ -69,7 +67,6 @@ class WatchedStretch:
 
     end_ns: int
     innovations: FloatArray
-    std: FloatArray
     marks: FloatArray | None
     evidence: tuple[OnsetEvidence, ...]
     why_not: str = ''
@@ -156,17 +153,19 @@ class Watch:
 
     Attributes
     ----------
+    part
+        The part of the tow.
     away
         Largest change of a channel by the learned boards, in the model's own error, in the newest
         stretch.
     close
         Stretches up to now in which boards were close, up to `REST`.
+    compared
+        Stretches that were compared up to now.
     lost
         True if the part has ended: another has to begin.
     refused
         True if it has ended because the model cannot be towed along with these boards.
-    judged
-        True if anything was ever judged.
     """
 
     def __init__(self, settings: WatchSettings, start: WatchStart) -> None:
@@ -178,14 +177,12 @@ class Watch:
         self._lineariser = TowLineariser(self._towed, WATCHED, point)
         self._responses: OnsetResponses | None = None
         self._lasting: list[FloatArray] = []
-        self._manoeuvres: list[tuple[bool, bool]] = []
-        self._growing = settings.table.growing.astype(float)
-        self._belief = start.belief
+        self._manoeuvres: list[bool] = []
         self._chain: Chain | None = None
         self._bank = RatioBank(settings.table, settings.window)
         self._counts: list[int] = []
         self.compared, self.away, self.close = start.compared, 0.0, 0
-        self.lost = self.refused = self.judged = False
+        self.lost = self.refused = self._judged = False
 
     def __len__(self) -> int:
         """Return the number of stretches along which the model was towed."""
@@ -201,18 +198,15 @@ class Watch:
         return self.close < REST or self.compared < self._own.learning
 
     @property
-    def learned(self) -> FloatArray | None:
-        """Boards by the present belief; None where nothing was compared."""
-        belief = self.belief()
-        if belief is None:
-            return None
-        known = self._own.errors.known.values
-        return np.asarray(known + belief.mean[: len(known)], np.float64)
+    def learned(self) -> FloatArray:
+        """Boards by the present belief; as they are known where nothing was compared."""
+        known, belief = self._own.errors.known.values, self.belief()
+        return known if belief is None else known + belief.mean[: len(known)]
 
     def belief(self, stretch: int | None = None) -> Belief | None:
         """Return the belief before a stretch, or after all; None where nothing was compared."""
         if self._chain is None:
-            return self._belief
+            return self.start.belief
         return self._chain.belief(None if stretch is None else sum(self._counts[:stretch]))
 
     def take_along(self, absorbed: Sequence[Absorbed], now_ns: int) -> None:
@@ -221,7 +215,8 @@ class Watch:
         every = (*self.start.absorbed, *absorbed)[-MOST_ABSORBED:]
         self.start = replace(self.start, absorbed=every, since_ns=now_ns)
         # With the next stretch all are appended to a new chain.
-        self._chain, self._bank = None, RatioBank(self._own.table, self._own.window)
+        self._chain = self._chain and Chain(self._chain.before)
+        self._bank = RatioBank(self._own.table, self._own.window)
         self._counts.clear()
 
     def advance(self, most: int | None = None) -> WatchedStretch:
@@ -233,82 +228,72 @@ class Watch:
             Number of stretches along which the model is towed at most.
         """
         try:
-            tow = self.part.cut()
+            return self._advanced(self.part.cut(), most)
+        except (NoSteadyState, StepFailed) as reason:
+            self.lost = self.refused = True
+            return self._not_compared(f'responses of the gear are not known: {reason}')
         except TrawlError as reason:
             self.lost = self.part.number >= FEWEST
             return self._not_compared(str(reason))
-        self._lineariser.extend(tow, np.zeros(tow.inputs.number_of_knots), most)
-        linear = self._lineariser.linearised(tow)
-        failed, done = self._lineariser.failed, len(self)
-        self.lost, self.refused = bool(failed), failed not in ('', BY_SENSOR)
-        if not self.judged and done >= SETTLING + REST:
-            in_vain = not linear.towed[done - REST : done].any()
-            self.lost, self.refused = self.lost or in_vain, self.refused or in_vain
-        if self._responses is None and linear.towed.any():
-            own, first = self._own, tow.inputs.values[0]
-            try:
-                self._responses = onset_responses(
-                    own.gear, self.start.coefficients, first, own.window
-                )
-            except (NoSteadyState, StepFailed) as reason:
-                self.lost = self.refused = True
-                return self._not_compared(f'responses of the gear are not known: {reason}')
-        if self._responses is None:
-            return self._not_compared(failed or JUST_BEGUN)
-        return self._appended(linear, self._responses)
 
     def _not_compared(self, why_not: str) -> WatchedStretch:
         if self.learns:
             # The gear may settle elsewhere: that boards were close before proves nothing.
             self.close = 0
         none = np.full(len(WATCHED), np.nan)
-        return WatchedStretch(self.part.end_ns, none, none, None, (), why_not)
+        return WatchedStretch(self.part.end_ns, none, None, (), why_not)
 
-    def _appended(self, linear: LinearisedTow, responses: OnsetResponses) -> WatchedStretch:
-        """Append the new stretches to the chain."""
-        tow, errors = linear.tow, self._own.errors
-        self._lasting += [
-            self._by_values(linear, stretch)
-            for stretch in range(len(self._lasting), len(self._lineariser))
-        ]
-        if self._belief is None:
-            self._belief = errors.belief(layout_of(tow, self._towed, 1.0))
+    def _advanced(self, tow: MovingTow, most: int | None) -> WatchedStretch:
+        """Tow the model on along a tow, and compare the new stretches."""
+        own = self._own
+        self._lineariser.extend(tow, np.zeros(tow.inputs.number_of_knots), most)
+        linear, failed = self._lineariser.linearised(tow), self._lineariser.failed
+        towed = linear.towed[: len(self)]
+        in_vain = len(self) >= SETTLING + REST and not (self._judged or towed[-REST:].any())
+        self.lost = in_vain or bool(failed)
+        self.refused = in_vain or failed not in ('', BY_SENSOR)
+        if self._responses is None:
+            if not towed.any():
+                return self._not_compared(failed or JUST_BEGUN)
+            self._responses = onset_responses(
+                own.gear, self.start.coefficients, tow.inputs.values[0], own.window
+            )
         if self._chain is None:
-            self._chain = Chain(self._belief)
-        # Readings are smoothed again, but stretches that were judged stay as they are.
+            layout = layout_of(tow, self._towed, 1.0)
+            self._chain = Chain(self.start.belief or own.errors.belief(layout))
+        for stretch in range(len(self._lasting), len(self)):
+            self._lasting.append(self._by_values(linear, stretch))
         self._manoeuvres += manoeuvres(tow)[len(self._manoeuvres) :]
         unrest = unrest_of(self._manoeuvres)
         rows = residual_rows(
-            self._towed, linear, self._belief, errors,
-            log_factor=errors.log_factor(self.part.log), unrest=unrest,
-            absorbed=self._absorbed(tow, responses),
+            self._towed, linear, self._chain.before, own.errors,
+            log_density=self.part.log_density, unrest=unrest,
+            absorbed=self._absorbed(len(tow), self._responses),
         )  # fmt: skip
-        why_not = {round(one.begin / tow.stretch_s): one.why for one in linear.left_out}
-        found = self._not_compared(JUST_BEGUN) if not self._counts else None
-        for stretch in range(len(self._counts), len(self._lineariser)):
-            own = rows.stretches == stretch
-            self._counts.append(int(own.sum()))
-            if own.any():
-                moved = linear.by['coefficients'][stretch, rows.channels[own]]
-                found = self._compare(rows.of(own), stretch, float(unrest[stretch]), moved)
-            else:
-                self._bank.step(None, np.zeros(0), float(unrest[stretch]))
-                found = self._not_compared(why_not.get(stretch, JUST_BEGUN))
-        assert found is not None
+        found = [
+            self._appended(rows.of(stretch), linear, stretch, float(unrest[stretch]))
+            for stretch in range(len(self._counts), len(self))
+        ][-1]
         if found.why_not:
             return found
-        self.judged = True
+        self._judged = True
         return replace(found, evidence=tuple(self._bank.best()))
 
-    def _compare(
-        self, rows: ResidualRows, stretch: int, unrest: float, moved: FloatArray
+    def _appended(
+        self, rows: ResidualRows, linear: LinearisedTow, stretch: int, unrest: float
     ) -> WatchedStretch:
-        """Compare the rows (r) of a stretch; ``moved`` (r, 12) are derivatives by coefficients."""
+        """Append the rows (r) of a stretch to the chain, and compare them."""
         assert self._chain is not None
         assert self._responses is not None
+        self._counts.append(len(rows.residual))
+        if not len(rows.residual):
+            self._bank.step(None, np.zeros(0), unrest)
+            begin = stretch * linear.tow.stretch_s
+            why = (one.why for one in linear.left_out if one.begin <= begin < one.end)
+            return self._not_compared(next(why, JUST_BEGUN))
         link = self._chain.append(rows.covariance, rows.columns, rows.residual)
-        ages = np.arange(self._own.window)
-        signatures = self._responses.since(self._lasting[stretch], ages, self._growing)
+        ages, growing = np.arange(self._own.window), self._own.table.growing
+        signatures = self._responses.since(self._lasting[stretch], ages, growing)
         marks = self._bank.step(link, signatures[:, rows.channels], unrest)
         why_not = LEARNS if self.learns else ''
         end_ns = self.part.begin_ns(stretch + 1)
@@ -316,34 +301,29 @@ class Watch:
             # An onset by boards that were not close is none.
             self._bank.forget()
         self.compared += 1
-        learned = self.learned
-        assert learned is not None
-        away = moved @ (learned - self.start.coefficients)
-        self.away = float(np.max(np.abs(away) / rows.model))
+        by_boards = linear.by['coefficients'][stretch, rows.channels]
+        away = by_boards @ (self.learned - self.start.coefficients) / rows.model
+        self.away = float(np.max(np.abs(away)))
         if self.learns:
             self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
-        innovations, std = np.full((2, len(WATCHED)), np.nan)
+        innovations = np.full(len(WATCHED), np.nan)
         innovations[rows.channels] = link.innovations
-        std[rows.channels] = np.linalg.norm(link.root, axis=1)
-        return WatchedStretch(end_ns, innovations, std, marks, (), why_not)
+        return WatchedStretch(end_ns, innovations, marks, (), why_not)
 
     def _by_values(self, linear: LinearisedTow, stretch: int) -> FloatArray:
         """Return the derivatives (k, p) of a stretch by the values of all effects."""
-        tow = linear.tow
-        at = without_errors(tow.inputs)(float(tow.middles[stretch])).situation
+        at = without_errors(linear.tow.inputs)(float(linear.tow.middles[stretch])).situation
         values, by = np.nan_to_num(linear.values[stretch]), linear.by['examined'][stretch]
         return self._own.gear.by_values(by, values, replace(at, hours=1.0))
 
-    def _absorbed(self, tow: MovingTow, responses: OnsetResponses) -> FloatArray:
+    def _absorbed(self, number: int, responses: OnsetResponses) -> FloatArray:
         """Return the signatures (n, k, a) of what has been found before, per prior std."""
-        found = np.zeros((*tow.means.shape, len(self.start.absorbed)))
-        scale = self._own.table.scale
+        found = np.zeros((number, len(WATCHED), len(self.start.absorbed)))
+        scale, growing = self._own.table.scale, self._own.table.growing
         for place, one in enumerate(self.start.absorbed):
-            own, known = [one.column], responses.only([one.column])
             for stretch, lasting in enumerate(self._lasting):
                 age = round((self.part.begin_ns(stretch) - one.onset_ns) / LENGTH_NS)
                 if age >= 0:
-                    ages, growing = np.array([age]), self._growing[own]
-                    since = known.since(lasting[:, own], ages, growing)
-                    found[stretch, :, place] = scale[one.column] * since[0, :, 0]
+                    (since,) = responses.since(lasting, np.array([age]), growing)
+                    found[stretch, :, place] = scale[one.column] * since[:, one.column]
         return found
