@@ -90,7 +90,7 @@ def test_a_long_tow_is_watched_on_with_its_last_stretches(onset_gear, onset_samp
     told, options = [], OnsetOptions(longest=18, again=6)
     monitor = OnsetMonitor(onset_gear, known, options, effects=FEW, on_stretch=told.append)
     assert [found for sample in onset_samples(16) for found in monitor.feed(sample)] == []
-    assert len(monitor._watch) < len(told) - 2
+    assert len(monitor.watch) < len(told) - 2
     first = next(place for place, one in enumerate(told) if not one.why_not)
     assert len([one for one in told[first:] if one.why_not]) <= 2 * REST
 
@@ -152,7 +152,7 @@ def test_while_boards_are_far_from_what_is_learned_nothing_is_raised_and_that_is
     assert found == []
     learning = [one for one in told if one.why_not == LEARNS]
     assert len(learning) >= REST
-    assert all(one.evidence == () for one in learning)
+    assert np.isnan([one.rarity for one in learning]).all()
     assert monitor.unwatched == len(told)
     assert monitor.watched == len(judged)
     # What is known of errors is still known where the watch began anew with other boards.

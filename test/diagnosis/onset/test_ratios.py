@@ -64,8 +64,9 @@ def test_more_is_asked_for_of_an_onset_near_a_manoeuvre():
 
 def test_of_onsets_that_were_discarded_there_is_no_evidence():
     bank = RatioBank(TABLE, 5)
+    none = Chain(Belief(np.zeros(0), np.eye(0))).append(*np.zeros((2, 0, 0)), np.zeros(0))
     for _ in range(4):
-        bank.step(None, np.zeros(0), 0.0)
+        bank.step(none, np.zeros((5, 0, P)), 0.0)
     assert bank.best()
     bank.forget()
     assert bank.best() == []

@@ -9,10 +9,12 @@ from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.diagnosis.onset.residuals import (
+    INFLATION,
     MODEL_FACTOR_IN_MANOEUVRES,
     PASSING_MODEL_FACTOR,
     UNREST_S,
-    ErrorModel,
+    belief_of,
+    log_factor,
     residual_rows,
     unrest_of,
 )
@@ -58,10 +60,10 @@ def variances(gear, linear):
     """Variances (n, k) of the residuals by what is known of the errors."""
 
     def of(known, unrest=0.0, absorbed=None):
-        errors = ErrorModel(known, 1.0)
+        belief = belief_of(known, layout_of(linear.tow, gear, 1.0))
         none = np.zeros((STRETCHES, K, 0)) if absorbed is None else absorbed
         rows = residual_rows(
-            gear, linear, errors.belief(layout_of(linear.tow, gear, 1.0)), errors,
+            gear, linear, belief, known,
             log_density=1.0, unrest=np.full(STRETCHES, unrest), absorbed=none,
         )  # fmt: skip
         found = np.zeros((STRETCHES, K))
@@ -79,7 +81,9 @@ DENSITIES = {name: 3.0 * CHANNELS[name].noise * np.sqrt(LIVE.stretch_s) for name
 @pytest.mark.parametrize('told', [{'sizes': THRICE}, {'densities': DENSITIES}])
 def test_means_scatter_by_what_was_found(variances, told):
     more = variances(replace(KNOWN, **told)) - variances(KNOWN)
-    np.testing.assert_allclose(more, np.tile(8.0 * NOISE**2, (STRETCHES, 1)), rtol=1e-6)
+    np.testing.assert_allclose(
+        more, np.tile(8.0 * (INFLATION * NOISE) ** 2, (STRETCHES, 1)), rtol=1e-6
+    )
 
 
 def test_less_than_readings_scatter_changes_nothing(variances):
@@ -91,8 +95,7 @@ def test_a_log_that_is_worse_than_its_readings_show_is_as_bad_as_was_found():
     for told, factor in (
         ({}, 1.0), ({'densities': {'speed': 0.06}}, 3.0), ({'sizes': ErrorSizes(log=4.0)}, 4.0),
     ):  # fmt: skip
-        found = ErrorModel(replace(KNOWN, **told), 1.0).log_factor(density=0.02)
-        assert found == pytest.approx(factor)
+        assert log_factor(replace(KNOWN, **told), density=0.02) == pytest.approx(factor)
 
 
 def test_in_a_manoeuvre_the_model_is_less_exact(variances):

@@ -10,7 +10,6 @@ from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.diagnosis.onset.part import SETTLING
-from trawl_ros.diagnosis.onset.residuals import ErrorModel
 from trawl_ros.diagnosis.onset.watch import CLOSE, REST, Watch, WatchSettings, WatchStart
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
@@ -40,7 +39,7 @@ def far_off(onset_gear):
 def settings(onset_gear, far_off):
     table = candidate_table(FEW)
     gear = WatchedGear(build_model(onset_gear), effects_of(onset_gear), table.at_one_hour())
-    return WatchSettings(gear, build_water(onset_gear), table, ErrorModel(far_off), 20)
+    return WatchSettings(gear, build_water(onset_gear), table, far_off, 20)
 
 
 def watched(watch, samples):
@@ -90,7 +89,7 @@ def test_boards_far_off_are_learned_within_minutes_and_the_tow_is_judged(
     compared = [one for one in told if one.compared]
     learned = [one for one in compared if one.why_not]
     assert REST <= len(learned) <= 3 * REST
-    assert max(one.rarity for one in compared) < 0.5 * monitor.options.limit
+    assert np.nanmax([one.rarity for one in compared]) < 0.5 * monitor.options.limit
 
 
 def test_boards_with_which_nothing_can_be_compared_for_minutes_are_refused(

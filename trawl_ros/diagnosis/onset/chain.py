@@ -6,6 +6,7 @@ The rows y of a tow have a joint normal distribution of covariance S = L Lᵀ. T
 of a stretch are its residuals less what the stretches before predict, white and of unit size.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,7 +64,7 @@ class Link:
 
     def whitened(self, rows: FloatArray) -> FloatArray:
         """Return rows (r, ...) in units of their errors."""
-        flat = rows.reshape(len(self.root), -1)
+        flat = rows.reshape(len(rows), math.prod(rows.shape[1:]))
         white = solve_triangular(self.root, flat, lower=True, check_finite=False)
         return np.asarray(white.reshape(rows.shape), np.float64)
 

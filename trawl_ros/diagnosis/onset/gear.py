@@ -29,14 +29,10 @@ class WatchedGear:
     effects: tuple[Effect, ...]
 
     @property
-    def moving(self) -> tuple[Effect, ...]:
-        """Effects that act on the gear or on what it is towed with."""
-        return tuple(effect for effect in self.effects if acts_on_gear(effect))
-
-    @property
     def towed(self) -> TowedGear:
-        """Gear as the estimator tows it."""
-        return TowedGear(self.model, self.acting, examined=self.moving)
+        """Gear as the estimator tows it, with the effects that act on it or on its inputs."""
+        moving = tuple(effect for effect in self.effects if acts_on_gear(effect))
+        return TowedGear(self.model, self.acting, examined=moving)
 
     def counted(self, at: Situation) -> BoolArray:
         """Return flags (p,) of the values that change what counters show."""
@@ -68,11 +64,10 @@ class WatchedGear:
             if acts_on_gear(effect):
                 part += moved[:, first : first + part.shape[1]]
                 first += part.shape[1]
-            if type(effect).apply_to_sensors is not Effect.apply_to_sensors:
-                part += by_values(
-                    self.acting, effect, lambda there: shown_values(there, observables, at)
-                )[:, ROWS].T
-            parts.append(part)
+            by_sensors = by_values(
+                self.acting, effect, lambda there: shown_values(there, observables, at)
+            )
+            parts.append(part + by_sensors[:, ROWS].T)
         return np.hstack(parts)
 
 

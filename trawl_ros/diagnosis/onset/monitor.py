@@ -8,7 +8,7 @@ each new one, and that watch takes the place of the first.
 """
 
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,13 +19,10 @@ from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.diagnosis.onset.judging import finding
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
 from trawl_ros.diagnosis.onset.part import LENGTH_NS, SETTLING
-from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
-from trawl_ros.diagnosis.onset.residuals import ErrorModel
 from trawl_ros.diagnosis.onset.watch import (
     CLOSE,
     JUST_BEGUN,
     REST,
-    Absorbed,
     Watch,
     WatchedStretch,
     WatchSettings,
@@ -112,6 +109,8 @@ class OnsetMonitor:
 
     Attributes
     ----------
+    watch
+        Watch over the part of the tow that goes on.
     findings
         All of them, by number; the newest may still be open.
     watched, unwatched
@@ -140,9 +139,8 @@ class OnsetMonitor:
         self._usual = prior.start
         known = np.sqrt(np.diag(self._known.covariance)) / prior.std
         learning = own.learning if np.exp(np.mean(np.log(known))) > own.poorly_known else 0
-        errors = ErrorModel(self._known)
         self._settings = WatchSettings(
-            watched, build_water(gear), self.table, errors, own.window, learning
+            watched, build_water(gear), self.table, self._known, own.window, learning
         )
         self._on_stretch = on_stretch
         self.findings: dict[int, Finding] = {}
@@ -151,7 +149,7 @@ class OnsetMonitor:
 
     def reset(self) -> None:
         """Begin a new tow; findings stay."""
-        self._watch = Watch(self._settings, WatchStart(self._known.values))
+        self.watch = Watch(self._settings, WatchStart(self._known.values))
         self._samples: deque[Sample] = deque()
         self._next: Watch | None = None
         self._rarity, self._part, self._not_before_ns = 0.0, 1.0, 0
@@ -168,7 +166,7 @@ class OnsetMonitor:
         self._samples.append(sample)
         if self._next is not None:
             self._next.feed(sample)
-        return list(self._take()) if self._watch.feed(sample) else []
+        return list(self._take()) if self.watch.feed(sample) else []
 
     def dismiss(self, number: int) -> Finding | None:
         """Take a finding for what is no effect; None where there is no such open one."""
@@ -190,16 +188,16 @@ class OnsetMonitor:
         return found
 
     def _take(self) -> Iterator[Finding]:
-        stretch = self._watch.advance()
+        stretch = self.watch.advance()
         self.why_not, self.withheld, self._rarity = stretch.why_not, '', stretch.rarity
         self.unwatched += bool(stretch.why_not)
         self.watched += not stretch.why_not
         self._on_stretch(stretch)
-        if stretch.evidence:
-            yield from self._judge(stretch.end_ns, stretch.evidence)
-        if self._watch.lost or len(self._watch) > 2 * self.options.longest:
+        if self.watch.evidence:
+            yield from self._judge(stretch.end_ns)
+        if self.watch.lost or len(self.watch) > 2 * self.options.longest:
             self._begin_again()
-        oldest_ns = self._watch.part.begin_ns(0)
+        oldest_ns = self.watch.part.begin_ns(0)
         while self._samples and self._samples[0].stamp < oldest_ns:
             self._samples.popleft()
         self._owed = True
@@ -217,7 +215,7 @@ class OnsetMonitor:
 
         Where the model was never towed, boards nearer to those of the gear file are tried first.
         """
-        watch, begin_ns = self._watch, self._watch.part.end_ns
+        watch, begin_ns = self.watch, self.watch.part.end_ns
         start = replace(watch.start, belief=watch.belief(), compared=watch.compared)
         way, turn = self._usual - self._known.values, self._tried % (len(NEARER) + 1)
         if watch.refused and not self.watched and np.any(way):
@@ -226,7 +224,7 @@ class OnsetMonitor:
             if turn < len(NEARER):
                 start = replace(start, coefficients=self._known.values + NEARER[turn] * way)
                 begin_ns = watch.part.begin_ns(0)
-        self._watch, self._next = self._watch_from(begin_ns, start), None
+        self.watch, self._next = self._watch_from(begin_ns, start), None
 
     def _catch_up(self) -> None:
         """Watch a part of the tow again with other boards, where there is reason to."""
@@ -239,7 +237,7 @@ class OnsetMonitor:
         other, own = self._next, self.options
         if other is None:
             return
-        hurry = self._watch.learns or self._rarity > own.limit
+        hurry = self.watch.learns or self._rarity > own.limit
         stretch = other.advance(own.hurried_pace if hurry else own.pace)
         if other.lost:
             self._refuse()
@@ -250,7 +248,7 @@ class OnsetMonitor:
 
     def _again(self) -> Watch | None:
         """Return a watch with the boards as they were learned; None without a reason for one."""
-        watch, own = self._watch, self.options
+        watch, own = self.watch, self.options
         far = watch.away >= CLOSE and watch.part.end_ns >= self._not_before_ns
         if not (far or len(watch) > own.longest):
             return None
@@ -269,51 +267,53 @@ class OnsetMonitor:
 
     def _compare(self, other: Watch) -> None:
         """Take another watch where its boards are closer to what is learned with them."""
-        if other.away >= self._watch.away and len(self._watch) <= self.options.longest:
+        if other.away >= self.watch.away and len(self.watch) <= self.options.longest:
             self._refuse()
             return
-        hurried = self._watch.learns and not self._settings.learning
-        if self._watch.learns:
+        hurried = self.watch.learns and not self._settings.learning
+        if self.watch.learns:
             # That boards are close to what they were learned from proves nothing.
             other.close = 0
-        self._watch, self._next = other, None
+        self.watch, self._next = other, None
         self._settle(0 if hurried else REST)
 
     def _settle(self, waits: int) -> None:
         """Stay with the watch for so many stretches."""
-        self._part, self._not_before_ns = 1.0, self._watch.part.end_ns + waits * LENGTH_NS
+        self._part, self._not_before_ns = 1.0, self.watch.part.end_ns + waits * LENGTH_NS
 
-    def _judge(self, now_ns: int, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
-        before, limit = self.open, self.options.limit
+    def _judge(self, now_ns: int) -> Iterator[Finding]:
+        before = self.open
         if before is None:
-            yield from self._raise(now_ns, evidence)
+            yield from self._raise(now_ns)
             return
-        found = finding(self.table, before.number, now_ns, evidence, before.raised_ns, limit)
-        if evidence[0].rarity < 0.5 * limit or found.onset_ns >= before.raised_ns:
+        found = self._finding(before.number, now_ns, before.raised_ns)
+        if found.rarity < 0.5 * found.limit or found.onset_ns >= before.raised_ns:
             # An onset after the finding was raised is that of another one.
             yield self._put(replace(before, state='withdrawn', updated_ns=now_ns))
-            yield from self._raise(now_ns, evidence)
+            yield from self._raise(now_ns)
             return
         if now_ns - before.onset_ns >= self.options.settled * LENGTH_NS:
             found = replace(found, state='settled')
             self._take_along(found)
         yield self._put(found)
 
-    def _raise(self, now_ns: int, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
-        limit = self.options.limit
-        if evidence[0].rarity <= limit:
+    def _finding(self, number: int, now_ns: int, raised_ns: int) -> Finding:
+        evidence, limit = self.watch.evidence, self.options.limit
+        return finding(self.table, number, now_ns, evidence, raised_ns, limit)
+
+    def _raise(self, now_ns: int) -> Iterator[Finding]:
+        if self._rarity <= self.options.limit:
             self._confirmed = False
             return
-        if self._watch.away >= CLOSE and not self._confirmed:
+        if self.watch.away >= CLOSE and not self._confirmed:
             # Where the gear of other boards would go on is as much evidence.
             self.withheld = NOT_CLOSE
             return
         self._newest, self._confirmed = self._newest + 1, False
-        yield self._put(finding(self.table, self._newest, now_ns, evidence, now_ns, limit))
+        yield self._put(self._finding(self._newest, now_ns, now_ns))
 
     def _take_along(self, found: Finding) -> None:
         """Take what was found as present, and watch for what begins beside it."""
         (columns,) = (one.columns for one in self.table.candidates if one.name == found.name)
-        absorbed = [Absorbed(column, found.onset_ns) for column in columns]
-        self._watch.take_along(absorbed, found.updated_ns)
+        self.watch.take_along(columns, found.onset_ns, found.updated_ns)
         self._next = None

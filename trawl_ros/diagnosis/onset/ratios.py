@@ -78,21 +78,20 @@ class RatioBank:
     """
 
     def __init__(self, table: CandidateTable, window: int) -> None:
-        self.table, self._window = table, window
-        p = len(table.parameters)
+        self.table, p = table, len(table.parameters)
         self.products, self.squares = np.zeros((window, p)), np.zeros((window, p, p))
         self._asked = np.zeros(window)
         # Rows of each stretch in the chain, and its marks (r, w, p) by age of the onset then.
         self._marks: deque[tuple[Slice, FloatArray]] = deque(maxlen=window - 1)
         self.known = 0
 
-    def step(self, link: Link | None, signatures: FloatArray, unrest: float) -> FloatArray | None:
+    def step(self, link: Link, signatures: FloatArray, unrest: float) -> FloatArray:
         """Advance by a stretch, in which another onset may lie.
 
         Parameters
         ----------
         link
-            The stretch in the chain; None where nothing was compared.
+            The stretch in the chain, without rows where nothing was compared.
         signatures : (w, r, p) array
             Of the stretch, by age of the onset.
         unrest
@@ -100,8 +99,8 @@ class RatioBank:
 
         Returns
         -------
-        array or None
-            Marks (w, r, p) of the signatures in the innovations, of unit size; None without any.
+        array
+            Marks (w, r, p) of the signatures in the innovations, of unit size.
         """
         for array in (self.products, self.squares, self._asked):
             array[1:] = array[:-1].copy()
@@ -110,10 +109,7 @@ class RatioBank:
         if unrest == 1.0:
             # An onset just before shows by what moved alone.
             self._asked[: 1 + FEWEST] = MOVING
-        self.known = min(self.known + 1, self._window)
-        if link is None:
-            self._marks.append((slice(0, 0), np.zeros((0, *self.products.shape))))
-            return None
+        self.known = min(self.known + 1, len(self.products))
         own = np.moveaxis(signatures, 1, 0).copy()
         # Before the first onset that is known there is none.
         own[:, self.known :] = 0.0

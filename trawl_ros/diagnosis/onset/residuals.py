@@ -20,7 +20,7 @@ from trawl_ros.diagnosis.onset.chain import Belief
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.estimation.motion.nuisances import TowLayout, columns, layout_of
-from trawl_ros.estimation.motion.processes import ErrorTimes, group_rows
+from trawl_ros.estimation.motion.processes import ErrorTimes, GroupRows, group_rows
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 
@@ -36,36 +36,21 @@ PASSING_MODEL_FACTOR, PASSING_S = 3.0, 30.0
 error, and time in which it fades to 1/e: boards lean over in passing."""
 
 
-@dataclass(frozen=True)
-class ErrorModel:
-    """Errors with which a tow is watched.
+INFLATION = 1.2
+"""Factor on the std of all errors that are stated, as for steady windows."""
 
-    Attributes
-    ----------
-    known
-        Knowledge of the boards and of the sizes of errors.
-    inflation
-        Factor on the std of all errors that are stated, as for steady windows.
-    """
 
-    known: Knowledge
-    inflation: float = 1.2
+def belief_of(known: Knowledge, layout: TowLayout) -> Belief:
+    """Return the belief of the lasting parameters before anything is watched."""
+    covariance, number = known.covariance, int(lasting_flags(layout).sum())
+    roots = np.linalg.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)))
+    others = INFLATION * np.eye(number - len(roots))
+    return Belief(np.zeros(number), block_diag(roots, others))
 
-    def belief(self, layout: TowLayout) -> Belief:
-        """Return the belief of the lasting parameters before anything is watched."""
-        covariance, lasting = self.known.covariance, lasting_flags(layout)
-        roots = np.linalg.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)))
-        others = self.inflation * np.eye(int(lasting.sum()) - len(roots))
-        return Belief(np.zeros(int(lasting.sum())), block_diag(roots, others))
 
-    def noise(self, noise: FloatArray) -> FloatArray:
-        """Return the noise (n, k) of means, no less than neighbouring readings share."""
-        densities = np.array([self.known.densities.get(name, 0.0) for name in WATCHED])
-        return np.asarray(np.maximum(noise, densities / np.sqrt(LIVE.stretch_s)), np.float64)
-
-    def log_factor(self, density: float) -> float:
-        """Return the factor on the errors of a log whose readings show a noise density."""
-        return max(self.known.sizes.log, self.known.densities.get('speed', 0.0) / density)
+def log_factor(known: Knowledge, density: float) -> float:
+    """Return the factor on the errors of a log whose readings show a noise density."""
+    return max(known.sizes.log, known.densities.get('speed', 0.0) / density)
 
 
 @dataclass(frozen=True)
@@ -96,11 +81,8 @@ class ResidualRows:
     def of(self, stretch: int) -> 'ResidualRows':
         """Return the rows of a stretch, with their covariance with all rows before."""
         first, last = np.searchsorted(self.stretches, (stretch, stretch + 1))
-        own = slice(first, last)
-        return ResidualRows(
-            self.stretches[own], self.channels[own], self.model[own], self.residual[own],
-            self.columns[own], self.covariance[own, :last],
-        )  # fmt: skip
+        own = {name: array[first:last] for name, array in vars(self).items()}
+        return ResidualRows(**own | {'covariance': self.covariance[first:last, :last]})
 
 
 def lasting_flags(layout: TowLayout) -> BoolArray:
@@ -114,7 +96,7 @@ def residual_rows(
     gear: TowedGear,
     linear: LinearisedTow,
     belief: Belief,
-    errors: ErrorModel,
+    known: Knowledge,
     *,
     log_density: float,
     unrest: FloatArray,
@@ -128,8 +110,8 @@ def residual_rows(
         The gear, and its tow as it was linearised.
     belief
         Distribution of the lasting parameters; coefficients as departures from the known ones.
-    errors
-        Errors of the rows.
+    known
+        Knowledge of the boards and of the sizes of errors.
     log_density
         Noise density (m/s/√Hz) that the log's readings show.
     unrest : (n,) array
@@ -137,33 +119,37 @@ def residual_rows(
     absorbed : (n, k, a) array
         Signatures of what has been found before, each in units of its prior std.
     """
-    tow, layout, known = linear.tow, layout_of(linear.tow, gear, 1.0), errors.known
-    sizes = known.sizes.tempered(errors.inflation)
-    more = 1.0 + (MODEL_FACTOR_IN_MANOEUVRES - 1.0) * unrest
-    passing = PASSING_MODEL_FACTOR * unrest ** (UNREST_S / PASSING_S)
-    groups = group_rows(tow, linear.values, errors.noise(tow.noise))
-    wider = [
-        replace(
-            own, model=more[own.stretches] * own.model,
-            noise=np.hypot(own.noise, passing[own.stretches] * own.model),
-        )
-        for own in groups
-    ]  # fmt: skip
+    tow, layout = linear.tow, layout_of(linear.tow, gear, 1.0)
+    sizes = known.sizes.tempered(INFLATION)
+    # Means scatter no less than neighbouring readings share.
+    densities = np.array([known.densities.get(name, 0.0) for name in WATCHED])
+    noise = np.maximum(tow.noise, densities / np.sqrt(LIVE.stretch_s))
+    groups = group_rows(tow, linear.values, noise)
     of_errors = block_diag(
-        *(own.covariance(sizes.of_group(n), ErrorTimes()) for n, own in enumerate(wider))
+        *(
+            _wider(own, unrest[own.stretches]).covariance(sizes.of_group(number), ErrorTimes())
+            for number, own in enumerate(groups)
+        )
     )
     rows = np.hstack([(own.stretches, own.channels) for own in groups])
     order = np.argsort(rows[0], kind='stable')
     place, model = tuple(rows[:, order]), np.hstack([own.model for own in groups])[order]
     slopes = columns(linear, layout, np.ones(len(known.values)))[place]
-    lasting, std = lasting_flags(layout), np.full(len(layout), errors.inflation)
-    std[layout.of_log] *= errors.log_factor(log_density)
+    lasting, std = lasting_flags(layout), np.full(len(layout), INFLATION)
+    std[layout.of_log] *= log_factor(known, log_density)
     own_columns = slopes[:, lasting] @ belief.root
     everything = np.hstack((own_columns, (slopes * std)[:, ~lasting], absorbed[place]))
     shift = linear.by['coefficients'] @ (linear.point.coefficients - known.values)
     residual = (linear.residual + shift)[place] - slopes[:, lasting] @ belief.mean
     covariance = of_errors[np.ix_(order, order)] + everything @ everything.T
     return ResidualRows(*place, model, residual, own_columns, covariance)
+
+
+def _wider(rows: GroupRows, unrest: FloatArray) -> GroupRows:
+    """Return rows (m,) with the model's error larger, as it is in unrest (m,)."""
+    more = 1.0 + (MODEL_FACTOR_IN_MANOEUVRES - 1.0) * unrest
+    passing = PASSING_MODEL_FACTOR * unrest ** (UNREST_S / PASSING_S) * rows.model
+    return replace(rows, model=more * rows.model, noise=np.hypot(rows.noise, passing))
 
 
 def unrest_of(manoeuvres: Sequence[bool]) -> FloatArray:

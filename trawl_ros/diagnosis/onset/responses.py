@@ -64,8 +64,7 @@ class OnsetResponses:
         steps = lasting * self.applied[known, None] - self.fading[known]
         late = _grown(1.0 - self.applied)
         ramps = lasting * (hours[:, None] - late[known])[:, None] - self.grown[known]
-        signatures: FloatArray = steps * (1.0 - growing) + ramps * growing
-        return signatures
+        return np.where(growing > 0.0, ramps, steps)
 
 
 def onset_responses(
@@ -89,7 +88,7 @@ def onset_responses(
     StepFailed
         If its motion cannot be computed.
     """
-    parameters = MotionParameters(effects=gear.moving)
+    parameters = MotionParameters(effects=gear.towed.examined)
     point = InputPoint(inputs, np.zeros(3), hours=1.0)
     motion = DifferentiatedTow(
         gear.model.with_coefficients(coefficients), parameters, lambda time: point, gear.acting

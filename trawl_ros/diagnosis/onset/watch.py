@@ -12,11 +12,12 @@ from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.diagnosis.onset.candidates import WATCHED, CandidateTable
 from trawl_ros.diagnosis.onset.chain import Belief, Chain
 from trawl_ros.diagnosis.onset.gear import WatchedGear
+from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.part import LENGTH_NS, SETTLING, WatchedPart, manoeuvres
 from trawl_ros.diagnosis.onset.ratios import OnsetEvidence, RatioBank
 from trawl_ros.diagnosis.onset.residuals import (
-    ErrorModel,
     ResidualRows,
+    belief_of,
     residual_rows,
     unrest_of,
 )
@@ -49,7 +50,7 @@ MOST_ABSORBED = 6
 
 @dataclass(frozen=True)
 class WatchedStretch:
-    """Stretch as it was watched, and the evidence after it.
+    """Stretch as it was watched.
 
     Attributes
     ----------
@@ -57,29 +58,21 @@ class WatchedStretch:
         Its end.
     innovations : (k,) array
         Innovations of the watched channels, NaN where there are none.
-    marks : (w, r, p) array
-        What the candidates would leave in the innovations, by age; None without innovations.
-    evidence
-        Evidence for each candidate, the rarest first; none where nothing was judged.
     why_not
         Reason why nothing was judged; empty where it was.
+    rarity
+        The largest rarity of all candidates after it; NaN where nothing was judged.
     """
 
     end_ns: int
     innovations: FloatArray
-    marks: FloatArray | None
-    evidence: tuple[OnsetEvidence, ...]
     why_not: str = ''
+    rarity: float = np.nan
 
     @property
     def compared(self) -> bool:
         """True if readings were compared with the model."""
-        return self.marks is not None
-
-    @property
-    def rarity(self) -> float:
-        """The largest rarity of all candidates, 0 where there is none."""
-        return self.evidence[0].rarity if self.evidence else 0.0
+        return bool(np.isfinite(self.innovations).any())
 
 
 @dataclass(frozen=True)
@@ -92,8 +85,8 @@ class WatchSettings:
         The gear that is watched, and the water that turns pressure into depth.
     table
         Candidates that may begin.
-    errors
-        Errors of readings and model.
+    known
+        Knowledge of the boards and of the sizes of errors.
     window
         Onsets that are examined, in stretches.
     learning
@@ -103,17 +96,9 @@ class WatchSettings:
     gear: WatchedGear
     water: Water
     table: CandidateTable
-    errors: ErrorModel
+    known: Knowledge
     window: int
     learning: int = 0
-
-
-@dataclass(frozen=True)
-class Absorbed:
-    """Value that has been found before: its column, and the stamp (ns) of its onset."""
-
-    column: int
-    onset_ns: int
 
 
 @dataclass(frozen=True)
@@ -129,7 +114,7 @@ class WatchStart:
     compared
         Stretches that were compared before.
     absorbed
-        Values that have been found before.
+        Values that have been found before: column, and stamp (ns) of the onset.
     since_ns
         Stamp (ns) before which no onset is looked for.
     """
@@ -137,7 +122,7 @@ class WatchStart:
     coefficients: FloatArray
     belief: Belief | None = None
     compared: int = 0
-    absorbed: tuple[Absorbed, ...] = ()
+    absorbed: tuple[tuple[int, int], ...] = ()
     since_ns: int = 0
 
 
@@ -162,6 +147,10 @@ class Watch:
         Stretches up to now in which boards were close, up to `REST`.
     compared
         Stretches that were compared up to now.
+    evidence
+        Evidence for each candidate, the rarest first; none where nothing was judged.
+    marks : (w, r, p) array
+        What the candidates would leave in the newest innovations, by age.
     lost
         True if the part has ended: another has to begin.
     refused
@@ -183,6 +172,8 @@ class Watch:
         self._counts: list[int] = []
         self.compared, self.away, self.close = start.compared, 0.0, 0
         self.lost = self.refused = self._judged = False
+        self.evidence: list[OnsetEvidence] = []
+        self.marks = np.zeros((0, 0, 0))
 
     def __len__(self) -> int:
         """Return the number of stretches along which the model was towed."""
@@ -200,7 +191,7 @@ class Watch:
     @property
     def learned(self) -> FloatArray:
         """Boards by the present belief; as they are known where nothing was compared."""
-        known, belief = self._own.errors.known.values, self.belief()
+        known, belief = self._own.known.values, self.belief()
         return known if belief is None else known + belief.mean[: len(known)]
 
     def belief(self, stretch: int | None = None) -> Belief | None:
@@ -209,10 +200,11 @@ class Watch:
             return self.start.belief
         return self._chain.belief(None if stretch is None else sum(self._counts[:stretch]))
 
-    def take_along(self, absorbed: Sequence[Absorbed], now_ns: int) -> None:
-        """Take values as present, and watch for further onsets from a stamp (ns) on."""
+    def take_along(self, columns: Sequence[int], onset_ns: int, now_ns: int) -> None:
+        """Take values as present since an onset (ns), and watch for others from a stamp on."""
         # The oldest make room.
-        every = (*self.start.absorbed, *absorbed)[-MOST_ABSORBED:]
+        found = ((column, onset_ns) for column in columns)
+        every = (*self.start.absorbed, *found)[-MOST_ABSORBED:]
         self.start = replace(self.start, absorbed=every, since_ns=now_ns)
         # With the next stretch all are appended to a new chain.
         self._chain = self._chain and Chain(self._chain.before)
@@ -227,6 +219,7 @@ class Watch:
         most
             Number of stretches along which the model is towed at most.
         """
+        self.evidence, self.marks = [], np.zeros((0, 0, 0))
         try:
             return self._advanced(self.part.cut(), most)
         except (NoSteadyState, StepFailed) as reason:
@@ -240,8 +233,7 @@ class Watch:
         if self.learns:
             # The gear may settle elsewhere: that boards were close before proves nothing.
             self.close = 0
-        none = np.full(len(WATCHED), np.nan)
-        return WatchedStretch(self.part.end_ns, none, None, (), why_not)
+        return WatchedStretch(self.part.end_ns, np.full(len(WATCHED), np.nan), why_not)
 
     def _advanced(self, tow: MovingTow, most: int | None) -> WatchedStretch:
         """Tow the model on along a tow, and compare the new stretches."""
@@ -260,13 +252,13 @@ class Watch:
             )
         if self._chain is None:
             layout = layout_of(tow, self._towed, 1.0)
-            self._chain = Chain(self.start.belief or own.errors.belief(layout))
+            self._chain = Chain(self.start.belief or belief_of(own.known, layout))
         for stretch in range(len(self._lasting), len(self)):
             self._lasting.append(self._by_values(linear, stretch))
         self._manoeuvres += manoeuvres(tow)[len(self._manoeuvres) :]
         unrest = unrest_of(self._manoeuvres)
         rows = residual_rows(
-            self._towed, linear, self._chain.before, own.errors,
+            self._towed, linear, self._chain.before, own.known,
             log_density=self.part.log_density, unrest=unrest,
             absorbed=self._absorbed(len(tow), self._responses),
         )  # fmt: skip
@@ -276,8 +268,8 @@ class Watch:
         ][-1]
         if found.why_not:
             return found
-        self._judged = True
-        return replace(found, evidence=tuple(self._bank.best()))
+        self._judged, self.evidence = True, self._bank.best()
+        return replace(found, rarity=self.evidence[0].rarity if self.evidence else 0.0)
 
     def _appended(
         self, rows: ResidualRows, linear: LinearisedTow, stretch: int, unrest: float
@@ -286,15 +278,14 @@ class Watch:
         assert self._chain is not None
         assert self._responses is not None
         self._counts.append(len(rows.residual))
-        if not len(rows.residual):
-            self._bank.step(None, np.zeros(0), unrest)
-            begin = stretch * linear.tow.stretch_s
-            why = (one.why for one in linear.left_out if one.begin <= begin < one.end)
-            return self._not_compared(next(why, JUST_BEGUN))
         link = self._chain.append(rows.covariance, rows.columns, rows.residual)
         ages, growing = np.arange(self._own.window), self._own.table.growing
         signatures = self._responses.since(self._lasting[stretch], ages, growing)
-        marks = self._bank.step(link, signatures[:, rows.channels], unrest)
+        self.marks = self._bank.step(link, signatures[:, rows.channels], unrest)
+        if not len(rows.residual):
+            begin = stretch * linear.tow.stretch_s
+            why = (one.why for one in linear.left_out if one.begin <= begin < one.end)
+            return self._not_compared(next(why, JUST_BEGUN))
         why_not = LEARNS if self.learns else ''
         end_ns = self.part.begin_ns(stretch + 1)
         if why_not or end_ns <= self.start.since_ns:
@@ -308,7 +299,7 @@ class Watch:
             self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
         innovations = np.full(len(WATCHED), np.nan)
         innovations[rows.channels] = link.innovations
-        return WatchedStretch(end_ns, innovations, marks, (), why_not)
+        return WatchedStretch(end_ns, innovations, why_not)
 
     def _by_values(self, linear: LinearisedTow, stretch: int) -> FloatArray:
         """Return the derivatives (k, p) of a stretch by the values of all effects."""
@@ -320,10 +311,10 @@ class Watch:
         """Return the signatures (n, k, a) of what has been found before, per prior std."""
         found = np.zeros((number, len(WATCHED), len(self.start.absorbed)))
         scale, growing = self._own.table.scale, self._own.table.growing
-        for place, one in enumerate(self.start.absorbed):
+        for place, (column, onset_ns) in enumerate(self.start.absorbed):
             for stretch, lasting in enumerate(self._lasting):
-                age = round((self.part.begin_ns(stretch) - one.onset_ns) / LENGTH_NS)
+                age = round((self.part.begin_ns(stretch) - onset_ns) / LENGTH_NS)
                 if age >= 0:
                     (since,) = responses.since(lasting, np.array([age]), growing)
-                    found[stretch, :, place] = scale[one.column] * since[:, one.column]
+                    found[stretch, :, place] = scale[column] * since[:, column]
         return found
