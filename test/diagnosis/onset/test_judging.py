@@ -23,7 +23,7 @@ def found(mount):
         evidence('port_pitch_offset', 229.3), evidence('attitude_mount', mount),
         evidence('starboard_pitch_offset', 60.0),
     ]  # fmt: skip
-    return finding(TABLE, 1, 10**12, told, 10**12, 9.0)
+    return finding(TABLE, told, 10**12, 9.0)
 
 
 def test_an_effect_that_fits_no_worse_is_told_however_many_values_it_takes():

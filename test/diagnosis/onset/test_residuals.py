@@ -20,7 +20,6 @@ from trawl_ros.diagnosis.onset.residuals import (
 )
 from trawl_ros.effects.effect_set import NO_EFFECTS
 from trawl_ros.estimation.fit.error_terms import GROUPS
-from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, TowInputs
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
@@ -60,10 +59,9 @@ def variances(gear, linear):
     """Variances (n, k) of the residuals by what is known of the errors."""
 
     def of(known, unrest=0.0, absorbed=None):
-        belief = belief_of(known, layout_of(linear.tow, gear, 1.0))
         none = np.zeros((STRETCHES, K, 0)) if absorbed is None else absorbed
         rows = residual_rows(
-            gear, linear, belief, known,
+            gear, linear, belief_of(known), known,
             log_density=1.0, unrest=np.full(STRETCHES, unrest), absorbed=none,
         )  # fmt: skip
         found = np.zeros((STRETCHES, K))

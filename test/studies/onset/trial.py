@@ -1,6 +1,7 @@
 """Trial: a tow in which an effect begins, or none, towed by a plant and watched by the monitor."""
 
 import time
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -121,6 +122,8 @@ class OnsetTrial:
         Reason for which the trial could not be made.
     known
         Source of what was known of the boards, where it was a tow before.
+    reasons
+        Time (s) that was not judged, by the reason.
     """
 
     number: int
@@ -141,6 +144,7 @@ class OnsetTrial:
     seconds: float = 0.0
     why_not: str = ''
     known: str = ''
+    reasons: dict[str, float] = field(default_factory=dict)
     series: str = ''
 
 
@@ -199,6 +203,7 @@ def make_trial(task: OnsetTask) -> OnsetTrial:
         findings = list(monitor.findings.values())
         write_figure(picture, onset_figure(course, findings, monitor.options.limit, 0), DPI)
     first = {found.number: found for found in reversed(raised)}
+    reasons = Counter(one.why_not.partition(':')[0] for one in told if one.why_not)
     from_s = np.inf if trial.begin_s is None else trial.begin_s
     early = [one for one in first.values() if one.raised_ns / SECOND < from_s]
     later = [one for one in first.values() if one.raised_ns / SECOND >= from_s]
@@ -208,6 +213,7 @@ def make_trial(task: OnsetTask) -> OnsetTrial:
         watched_s=LIVE.stretch_s * monitor.watched,
         unwatched_s=LIVE.stretch_s * monitor.unwatched, fallen_s=fallen_s,
         rarity=float(np.nanmax(course.rarities, initial=0.0)),
+        reasons={why: LIVE.stretch_s * number for why, number in reasons.items()},
     )  # fmt: skip
     if not later:
         return trial

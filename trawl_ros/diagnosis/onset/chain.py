@@ -84,7 +84,7 @@ class Chain:
     """
 
     def __init__(self, before: Belief) -> None:
-        self.before, size = before, len(before.mean)
+        self._before, size = before, len(before.mean)
         self._root, self._columns = np.zeros((0, 0)), np.zeros((0, size))
         self.white = np.zeros(0)
 
@@ -117,7 +117,7 @@ class Chain:
 
     def belief(self, rows: int | None = None) -> Belief:
         """Return the belief after the first rows, or after all."""
-        columns, before = self._columns[:rows], self.before
+        columns, before = self._columns[:rows], self._before
         # Posterior in units of the root: mean Cᵀ w and covariance 1 - Cᵀ C, whitened columns C.
         left = np.eye(len(before.mean)) - columns.T @ columns
         mean = before.mean + before.root @ (columns.T @ self.white[:rows])

@@ -19,36 +19,29 @@ NORMAL_QUANTILE_95 = 1.96
 
 
 def finding(
-    table: CandidateTable,
-    number: int,
-    end_ns: int,
-    evidence: Sequence[OnsetEvidence],
-    raised_ns: int,
-    limit: float,
+    table: CandidateTable, evidence: Sequence[OnsetEvidence], end_ns: int, limit: float
 ) -> Finding:
-    """Return the finding that the evidence supports.
+    """Return the finding that the evidence supports, as it is raised, without a number.
 
     Parameters
     ----------
     table
         The candidates.
-    number
-        Number of the finding.
-    end_ns
-        End (ns) of the newest stretch.
     evidence
         Evidence for all candidates, the rarest first.
-    raised_ns
-        Time (ns) at which the finding was raised.
+    end_ns
+        End (ns) of the newest stretch.
     limit
         Rarity beyond which it is raised.
     """
     best, *others = sorted(evidence, key=lambda one: -weight(table, one))
     least = weight(table, best) - SIMILAR_EVIDENCE
+    # A candidate that fits as well is listed too, however many values it has.
+    similar = [one for one in others if weight(table, one) > least or one.ratio >= best.ratio]
     return Finding(
-        number=number,
+        number=0,
         state='raised',
-        raised_ns=raised_ns,
+        raised_ns=end_ns,
         updated_ns=end_ns,
         onset_ns=end_ns - (best.age + 1) * LENGTH_NS,
         # An onset late in a stretch looks like one at the beginning of the next.
@@ -57,12 +50,7 @@ def finding(
         name=best.candidate.name,
         words=best.candidate.words,
         values=_values(table, best),
-        # A candidate that fits as well is listed too, however many values it has.
-        alike=tuple(
-            one.candidate.name
-            for one in others
-            if weight(table, one) > least or one.ratio >= best.ratio
-        ),
+        alike=tuple(one.candidate.name for one in similar),
         rarity=evidence[0].rarity,
         limit=limit,
     )

@@ -128,10 +128,12 @@ def _checked(path: Path) -> bytes:
         return b''
     with open_file(path, TrawlError) as stream:
         data = stream.read(MOST_BYTES + LONGEST_LINE + 1)
-    first, *_ = data.split(b'\n', 1)
+    first, newline, _ = data.partition(b'\n')
     last = data[data.rfind(b'\n') + 1 :]
-    own = b'\n' not in data or _event(first) is not None
-    if len(data) > MOST_BYTES + LONGEST_LINE or not own or not _is_cut_line(last):
+    foreign = newline and _event(first) is None
+    # A last line without an end is the beginning of one that a kill cut short.
+    cut = last.startswith(BEGINNING) or BEGINNING.startswith(last)
+    if foreign or not cut or len(data) > MOST_BYTES + LONGEST_LINE:
         raise TrawlError(
             f'{path}: holds something other than events of a log book, and is left as it is; '
             'expected a new or empty file, or a log book'
@@ -145,8 +147,3 @@ def _event(line: bytes) -> Mapping[str, object] | None:
     except ValueError:
         return None
     return event if isinstance(event, dict) and event.keys() >= KEYS else None
-
-
-def _is_cut_line(text: bytes) -> bool:
-    """Return whether a text without an end may be the beginning of a line."""
-    return text.startswith(BEGINNING) or BEGINNING.startswith(text)

@@ -19,6 +19,7 @@ from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.diagnosis.onset.judging import finding
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
 from trawl_ros.diagnosis.onset.part import LENGTH_NS, SETTLING
+from trawl_ros.diagnosis.onset.residuals import belief_of
 from trawl_ros.diagnosis.onset.watch import (
     CLOSE,
     JUST_BEGUN,
@@ -55,8 +56,6 @@ class OnsetOptions:
 
     Attributes
     ----------
-    window
-        Onsets that are examined.
     settled
         Stretches since its onset after which a finding stays as it is.
     limit
@@ -76,7 +75,6 @@ class OnsetOptions:
         of the gear look alike; and stretches in which boards are learned after that.
     """
 
-    window: int = 60
     settled: int = 50
     limit: float = round(MARGIN * WHITE_LIMIT, 1)
     again: int = 60
@@ -139,9 +137,8 @@ class OnsetMonitor:
         self._usual = prior.start
         known = np.sqrt(np.diag(self._known.covariance)) / prior.std
         learning = own.learning if np.exp(np.mean(np.log(known))) > own.poorly_known else 0
-        self._settings = WatchSettings(
-            watched, build_water(gear), self.table, self._known, own.window, learning
-        )
+        water = build_water(gear)
+        self._settings = WatchSettings(watched, water, self.table, self._known, learning=learning)
         self._on_stretch = on_stretch
         self.findings: dict[int, Finding] = {}
         self._newest = last_number
@@ -149,7 +146,8 @@ class OnsetMonitor:
 
     def reset(self) -> None:
         """Begin a new tow; findings stay."""
-        self.watch = Watch(self._settings, WatchStart(self._known.values))
+        start = WatchStart(self._known.values, belief_of(self._known))
+        self.watch = Watch(self._settings, start)
         self._samples: deque[Sample] = deque()
         self._next: Watch | None = None
         self._rarity, self._part, self._not_before_ns = 0.0, 1.0, 0
@@ -227,24 +225,38 @@ class OnsetMonitor:
         self.watch, self._next = self._watch_from(begin_ns, start), None
 
     def _catch_up(self) -> None:
-        """Watch a part of the tow again with other boards, where there is reason to."""
+        """Watch a part of the tow again with other boards, where there is reason to.
+
+        That watch is taken where its boards are closer to what is learned with them; otherwise a
+        smaller change of boards is tried.
+        """
         if self.open is not None:
             # A finding is followed by the watch that made it.
             self._next = None
             return
         if self._next is None:
             self._next = self._again()
-        other, own = self._next, self.options
+        other, watch, own = self._next, self.watch, self.options
         if other is None:
             return
-        hurry = self.watch.learns or self._rarity > own.limit
+        hurry = watch.learns or self._rarity > own.limit
         stretch = other.advance(own.hurried_pace if hurry else own.pace)
-        if other.lost:
-            self._refuse()
-        elif len(other) >= other.part.number:
+        if not other.lost and len(other) < other.part.number:
+            return
+        self._next = None
+        if not other.lost:
             # Of boards a part of the way to those as learned the same evidence proves nothing.
             self._confirmed = stretch.rarity > own.limit and self._part == 1.0
-            self._compare(other)
+        if other.lost or (other.away >= watch.away and len(watch) <= own.longest):
+            self._part *= 0.5
+            if self._part < own.smallest_change:
+                self._settle(own.pause)
+            return
+        if watch.learns:
+            # That boards are close to what they were learned from proves nothing.
+            other.close = 0
+        self.watch = other
+        self._settle(0 if watch.learns and not self._settings.learning else REST)
 
     def _again(self) -> Watch | None:
         """Return a watch with the boards as they were learned; None without a reason for one."""
@@ -258,59 +270,31 @@ class OnsetMonitor:
         start = replace(watch.start, coefficients=there, belief=belief)
         return self._watch_from(watch.part.begin_ns(first), start)
 
-    def _refuse(self) -> None:
-        """Go on with the watch as it is, and try a smaller change of boards."""
-        self._next = None
-        self._part *= 0.5
-        if self._part < self.options.smallest_change:
-            self._settle(self.options.pause)
-
-    def _compare(self, other: Watch) -> None:
-        """Take another watch where its boards are closer to what is learned with them."""
-        if other.away >= self.watch.away and len(self.watch) <= self.options.longest:
-            self._refuse()
-            return
-        hurried = self.watch.learns and not self._settings.learning
-        if self.watch.learns:
-            # That boards are close to what they were learned from proves nothing.
-            other.close = 0
-        self.watch, self._next = other, None
-        self._settle(0 if hurried else REST)
-
     def _settle(self, waits: int) -> None:
         """Stay with the watch for so many stretches."""
         self._part, self._not_before_ns = 1.0, self.watch.part.end_ns + waits * LENGTH_NS
 
     def _judge(self, now_ns: int) -> Iterator[Finding]:
-        before = self.open
-        if before is None:
-            yield from self._raise(now_ns)
-            return
-        found = self._finding(before.number, now_ns, before.raised_ns)
-        if found.rarity < 0.5 * found.limit or found.onset_ns >= before.raised_ns:
+        before, limit = self.open, self.options.limit
+        found = finding(self.table, self.watch.evidence, now_ns, limit)
+        if before is not None:
+            if found.rarity >= 0.5 * limit and found.onset_ns < before.raised_ns:
+                found = replace(found, number=before.number, raised_ns=before.raised_ns)
+                if now_ns - before.onset_ns >= self.options.settled * LENGTH_NS:
+                    found = replace(found, state='settled')
+                    self._take_along(found)
+                yield self._put(found)
+                return
             # An onset after the finding was raised is that of another one.
             yield self._put(replace(before, state='withdrawn', updated_ns=now_ns))
-            yield from self._raise(now_ns)
-            return
-        if now_ns - before.onset_ns >= self.options.settled * LENGTH_NS:
-            found = replace(found, state='settled')
-            self._take_along(found)
-        yield self._put(found)
-
-    def _finding(self, number: int, now_ns: int, raised_ns: int) -> Finding:
-        evidence, limit = self.watch.evidence, self.options.limit
-        return finding(self.table, number, now_ns, evidence, raised_ns, limit)
-
-    def _raise(self, now_ns: int) -> Iterator[Finding]:
-        if self._rarity <= self.options.limit:
+        if found.rarity <= limit:
             self._confirmed = False
-            return
-        if self.watch.away >= CLOSE and not self._confirmed:
+        elif self.watch.away >= CLOSE and not self._confirmed:
             # Where the gear of other boards would go on is as much evidence.
             self.withheld = NOT_CLOSE
-            return
-        self._newest, self._confirmed = self._newest + 1, False
-        yield self._put(self._finding(self._newest, now_ns, now_ns))
+        else:
+            self._newest, self._confirmed = self._newest + 1, False
+            yield self._put(replace(found, number=self._newest))
 
     def _take_along(self, found: Finding) -> None:
         """Take what was found as present, and watch for what begins beside it."""

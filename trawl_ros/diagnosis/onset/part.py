@@ -4,7 +4,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 
@@ -145,7 +144,6 @@ def manoeuvres(tow: MovingTow) -> list[bool]:
     return found
 
 
-@cache
 def counter_leap_shares(number: int) -> FloatArray:
     """Return the part (number,) of a counter's leap that its course has followed, by stretch.
 

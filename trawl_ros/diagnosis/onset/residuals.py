@@ -14,7 +14,7 @@ from itertools import accumulate
 import numpy as np
 from scipy.linalg import block_diag
 
-from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.chain import Belief
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
@@ -40,9 +40,9 @@ INFLATION = 1.2
 """Factor on the std of all errors that are stated, as for steady windows."""
 
 
-def belief_of(known: Knowledge, layout: TowLayout) -> Belief:
+def belief_of(known: Knowledge) -> Belief:
     """Return the belief of the lasting parameters before anything is watched."""
-    covariance, number = known.covariance, int(lasting_flags(layout).sum())
+    covariance, number = known.covariance, len(TowLayout(len(known.values), 0, (), WATCHED))
     roots = np.linalg.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)))
     others = INFLATION * np.eye(number - len(roots))
     return Belief(np.zeros(number), block_diag(roots, others))
@@ -83,13 +83,6 @@ class ResidualRows:
         first, last = np.searchsorted(self.stretches, (stretch, stretch + 1))
         own = {name: array[first:last] for name, array in vars(self).items()}
         return ResidualRows(**own | {'covariance': self.covariance[first:last, :last]})
-
-
-def lasting_flags(layout: TowLayout) -> BoolArray:
-    """Return flags (p,) of the parameters that last beyond a part of a tow."""
-    flags = np.ones(len(layout), np.bool_)
-    flags[layout.slices['starts']] = flags[layout.of_knots] = False
-    return flags
 
 
 def residual_rows(
@@ -135,7 +128,8 @@ def residual_rows(
     order = np.argsort(rows[0], kind='stable')
     place, model = tuple(rows[:, order]), np.hstack([own.model for own in groups])[order]
     slopes = columns(linear, layout, np.ones(len(known.values)))[place]
-    lasting, std = lasting_flags(layout), np.full(len(layout), INFLATION)
+    lasting, std = np.ones(len(layout), np.bool_), np.full(len(layout), INFLATION)
+    lasting[layout.slices['starts']] = lasting[layout.of_knots] = False
     std[layout.of_log] *= log_factor(known, log_density)
     own_columns = slopes[:, lasting] @ belief.root
     everything = np.hstack((own_columns, (slopes * std)[:, ~lasting], absorbed[place]))

@@ -36,15 +36,12 @@ class OnsetResponses:
     fading : (a, k, p) array
         Part of an effect long there that is still missing in the means of the stretches since,
         by the values of all effects.
-    grown : (a, k, p) array
-        Integral of that over time, in hours, up to the middle of each stretch.
     applied : (a, p) array
         Part of each value that the model's inputs have followed: 1 but for errors of counters,
         whose level in the minutes before they are.
     """
 
     fading: FloatArray
-    grown: FloatArray
     applied: FloatArray
 
     def since(self, lasting: FloatArray, ages: IntArray, growing: FloatArray) -> FloatArray:
@@ -52,7 +49,7 @@ class OnsetResponses:
 
         Parameters
         ----------
-        lasting : (k, p) array
+        lasting : (k, p) or (n, k, p) array
             Change by effects that have been there for long.
         ages
             0 in the stretch with whose beginning the effect begins.
@@ -63,7 +60,7 @@ class OnsetResponses:
         known = np.minimum(ages, len(self.fading) - 1)
         steps = lasting * self.applied[known, None] - self.fading[known]
         late = _grown(1.0 - self.applied)
-        ramps = lasting * (hours[:, None] - late[known])[:, None] - self.grown[known]
+        ramps = lasting * (hours[:, None] - late[known])[:, None] - _grown(self.fading)[known]
         return np.where(growing > 0.0, ramps, steps)
 
 
@@ -115,7 +112,7 @@ def onset_responses(
     shares, counted = counter_leap_shares(oldest), gear.counted(at)
     fading[..., counted] = _followed(fading[..., counted], shares)
     applied = np.where(counted, shares[:, None], 1.0)
-    return OnsetResponses(fading, _grown(fading), applied)
+    return OnsetResponses(fading, applied)
 
 
 def _grown(values: FloatArray) -> FloatArray:

@@ -41,8 +41,6 @@ class OnsetsInTow:
         All that was not withdrawn.
     course
         Innovations and evidence over time.
-    limit
-        Rarity beyond which a finding is raised.
     """
 
     tow: str
@@ -52,7 +50,6 @@ class OnsetsInTow:
     why_not: str
     findings: tuple[Finding, ...]
     course: WatchedCourse
-    limit: float
 
     def sentences(self) -> list[str]:
         """Sentence for each onset, or that there was none."""
@@ -60,10 +57,8 @@ class OnsetsInTow:
             return [f'{self.tow}: could not be watched for what begins in it ({self.why_not}).']
         if not self.findings:
             return [f'{self.tow}: nothing was found to begin in {self.watched / 2:.0f} minutes.']
-        return [
-            f'{self.tow}, minute {self.minute(found):.1f}: {found.sentence()}.'
-            for found in self.findings
-        ]
+        told = self.findings
+        return [f'{self.tow}, minute {self.minute(one):.1f}: {one.sentence()}.' for one in told]
 
     def minute(self, found: Finding) -> float:
         """Minutes from the tow's first sample to an onset."""
@@ -90,5 +85,5 @@ def onsets_in(
     kept = (found for found in monitor.findings.values() if found.state != 'withdrawn')
     return OnsetsInTow(
         tow, start_ns, monitor.watched, monitor.unwatched, why_not, tuple(kept),
-        WatchedCourse.of(told), monitor.options.limit,
+        WatchedCourse.of(told),
     )  # fmt: skip

@@ -15,14 +15,8 @@ from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.part import LENGTH_NS, SETTLING, WatchedPart, manoeuvres
 from trawl_ros.diagnosis.onset.ratios import OnsetEvidence, RatioBank
-from trawl_ros.diagnosis.onset.residuals import (
-    ResidualRows,
-    belief_of,
-    residual_rows,
-    unrest_of,
-)
+from trawl_ros.diagnosis.onset.residuals import ResidualRows, residual_rows, unrest_of
 from trawl_ros.diagnosis.onset.responses import OnsetResponses, onset_responses
-from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.stretches import FEWEST
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, without_errors
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
@@ -97,7 +91,7 @@ class WatchSettings:
     water: Water
     table: CandidateTable
     known: Knowledge
-    window: int
+    window: int = 60
     learning: int = 0
 
 
@@ -110,7 +104,7 @@ class WatchStart:
     coefficients
         Boards with which the model is towed.
     belief
-        Distribution of the lasting parameters; by what is known where None.
+        Distribution of the lasting parameters.
     compared
         Stretches that were compared before.
     absorbed
@@ -120,7 +114,7 @@ class WatchStart:
     """
 
     coefficients: FloatArray
-    belief: Belief | None = None
+    belief: Belief
     compared: int = 0
     absorbed: tuple[tuple[int, int], ...] = ()
     since_ns: int = 0
@@ -167,7 +161,7 @@ class Watch:
         self._responses: OnsetResponses | None = None
         self._lasting: list[FloatArray] = []
         self._manoeuvres: list[bool] = []
-        self._chain: Chain | None = None
+        self._chain = Chain(start.belief)
         self._bank = RatioBank(settings.table, settings.window)
         self._counts: list[int] = []
         self.compared, self.away, self.close = start.compared, 0.0, 0
@@ -190,14 +184,12 @@ class Watch:
 
     @property
     def learned(self) -> FloatArray:
-        """Boards by the present belief; as they are known where nothing was compared."""
-        known, belief = self._own.known.values, self.belief()
-        return known if belief is None else known + belief.mean[: len(known)]
+        """Boards by the present belief."""
+        known = self._own.known.values
+        return np.asarray(known + self.belief().mean[: len(known)], np.float64)
 
-    def belief(self, stretch: int | None = None) -> Belief | None:
-        """Return the belief before a stretch, or after all; None where nothing was compared."""
-        if self._chain is None:
-            return self.start.belief
+    def belief(self, stretch: int | None = None) -> Belief:
+        """Return the belief before a stretch, or after all."""
         return self._chain.belief(None if stretch is None else sum(self._counts[:stretch]))
 
     def take_along(self, columns: Sequence[int], onset_ns: int, now_ns: int) -> None:
@@ -207,7 +199,7 @@ class Watch:
         every = (*self.start.absorbed, *found)[-MOST_ABSORBED:]
         self.start = replace(self.start, absorbed=every, since_ns=now_ns)
         # With the next stretch all are appended to a new chain.
-        self._chain = self._chain and Chain(self._chain.before)
+        self._chain = Chain(self.start.belief)
         self._bank = RatioBank(self._own.table, self._own.window)
         self._counts.clear()
 
@@ -250,15 +242,12 @@ class Watch:
             self._responses = onset_responses(
                 own.gear, self.start.coefficients, tow.inputs.values[0], own.window
             )
-        if self._chain is None:
-            layout = layout_of(tow, self._towed, 1.0)
-            self._chain = Chain(self.start.belief or belief_of(own.known, layout))
         for stretch in range(len(self._lasting), len(self)):
             self._lasting.append(self._by_values(linear, stretch))
         self._manoeuvres += manoeuvres(tow)[len(self._manoeuvres) :]
         unrest = unrest_of(self._manoeuvres)
         rows = residual_rows(
-            self._towed, linear, self._chain.before, own.known,
+            self._towed, linear, self.start.belief, own.known,
             log_density=self.part.log_density, unrest=unrest,
             absorbed=self._absorbed(len(tow), self._responses),
         )  # fmt: skip
@@ -275,7 +264,6 @@ class Watch:
         self, rows: ResidualRows, linear: LinearisedTow, stretch: int, unrest: float
     ) -> WatchedStretch:
         """Append the rows (r) of a stretch to the chain, and compare them."""
-        assert self._chain is not None
         assert self._responses is not None
         self._counts.append(len(rows.residual))
         link = self._chain.append(rows.covariance, rows.columns, rows.residual)
@@ -310,11 +298,11 @@ class Watch:
     def _absorbed(self, number: int, responses: OnsetResponses) -> FloatArray:
         """Return the signatures (n, k, a) of what has been found before, per prior std."""
         found = np.zeros((number, len(WATCHED), len(self.start.absorbed)))
-        scale, growing = self._own.table.scale, self._own.table.growing
+        begins = np.array([self.part.begin_ns(stretch) for stretch in range(len(self))])
         for place, (column, onset_ns) in enumerate(self.start.absorbed):
-            for stretch, lasting in enumerate(self._lasting):
-                age = round((self.part.begin_ns(stretch) - onset_ns) / LENGTH_NS)
-                if age >= 0:
-                    (since,) = responses.since(lasting, np.array([age]), growing)
-                    found[stretch, :, place] = scale[column] * since[:, column]
+            ages = np.rint((begins - onset_ns) / LENGTH_NS).astype(np.int64)
+            lasting, growing = np.array(self._lasting), self._own.table.growing
+            since = responses.since(lasting, np.maximum(ages, 0), growing)[..., column]
+            here = self._own.table.scale[column] * since
+            found[: len(self), :, place] = np.where(ages[:, None] >= 0, here, 0.0)
         return found
