@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.diagnosis.onset.candidates import CandidateTable, candidate_table
+from trawl_ros.diagnosis.onset.candidates import candidate_table
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.diagnosis.onset.judging import finding
@@ -130,24 +130,22 @@ class OnsetMonitor:
     ) -> None:
         gear.require_boards('whose tow could be watched')
         self.options = own = options or OnsetOptions()
-        self._known = knowledge or of_gear_file(gear)
-        self.table: CandidateTable = candidate_table(effects)
+        self._known = known = knowledge or of_gear_file(gear)
+        prior, self.table = board_prior(gear), candidate_table(effects)
+        std = np.sqrt(np.diag(known.covariance)) / prior.std
+        learning = own.learning if np.exp(np.mean(np.log(std))) > own.poorly_known else 0
         watched = WatchedGear(build_model(gear), effects_of(gear), self.table.at_one_hour())
-        prior = board_prior(gear)
-        self._usual = prior.start
-        known = np.sqrt(np.diag(self._known.covariance)) / prior.std
-        learning = own.learning if np.exp(np.mean(np.log(known))) > own.poorly_known else 0
         water = build_water(gear)
-        self._settings = WatchSettings(watched, water, self.table, self._known, learning=learning)
-        self._on_stretch = on_stretch
+        self._settings = WatchSettings(watched, water, self.table, known, learning=learning)
+        self._usual, self._on_stretch = prior.start, on_stretch
         self.findings: dict[int, Finding] = {}
         self._newest = last_number
         self.reset()
 
     def reset(self) -> None:
         """Begin a new tow; findings stay."""
-        start = WatchStart(self._known.values, belief_of(self._known))
-        self.watch = Watch(self._settings, start)
+        known = self._known
+        self.watch = Watch(self._settings, WatchStart(known.values, belief_of(known)))
         self._samples: deque[Sample] = deque()
         self._next: Watch | None = None
         self._rarity, self._part, self._not_before_ns = 0.0, 1.0, 0
