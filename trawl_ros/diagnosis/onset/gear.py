@@ -42,7 +42,7 @@ class WatchedGear:
             for effect in self.effects
             for step in np.diag([parameter.std for parameter in effect.parameters])
         ]
-        return np.any(np.array(true)[:, :2] != shown[:2], axis=1)
+        return np.asarray(np.any(np.array(true)[:, :2] != shown[:2], axis=1), np.bool_)
 
     def by_values(self, moved: FloatArray, shown: FloatArray, at: Situation) -> FloatArray:
         """Return derivatives (k, p) of readings by the values of all effects.

@@ -89,8 +89,8 @@ def _sizes(found: Mapping[str, Any]) -> ErrorSizes:
     """Return sizes by their record; what it does not have is as stated."""
     stated: Any = STATED.record()
     known = {kind: _finite(stated[kind] | found.get(kind, {})) for kind in KINDS}
-    sizes = {kind: tuple(known[kind][group] for group in GROUPS) for kind in KINDS}
-    return ErrorSizes(**sizes, **_finite({'log': found.get('log', STATED.log)}))
+    sizes: Any = {kind: tuple(known[kind][group] for group in GROUPS) for kind in KINDS}
+    return ErrorSizes(**sizes | _finite({'log': found.get('log', STATED.log)}))
 
 
 def _finite(found: Mapping[str, float]) -> dict[str, float]:

@@ -126,7 +126,8 @@ def residual_rows(
     )
     rows = np.hstack([(own.stretches, own.channels) for own in groups])
     order = np.argsort(rows[0], kind='stable')
-    place, model = tuple(rows[:, order]), np.hstack([own.model for own in groups])[order]
+    stretches, channels = place = tuple(rows[:, order])
+    model = np.hstack([own.model for own in groups])[order]
     slopes = columns(linear, layout, np.ones(len(known.values)))[place]
     lasting, std = np.ones(len(layout), np.bool_), np.full(len(layout), INFLATION)
     lasting[layout.slices['starts']] = lasting[layout.of_knots] = False
@@ -136,7 +137,7 @@ def residual_rows(
     shift = linear.by['coefficients'] @ (linear.point.coefficients - known.values)
     residual = (linear.residual + shift)[place] - slopes[:, lasting] @ belief.mean
     covariance = of_errors[np.ix_(order, order)] + everything @ everything.T
-    return ResidualRows(*place, model, residual, own_columns, covariance)
+    return ResidualRows(stretches, channels, model, residual, own_columns, covariance)
 
 
 def _wider(rows: GroupRows, unrest: FloatArray) -> GroupRows:
