@@ -149,7 +149,7 @@ class OnsetMonitor:
         self.watch = Watch(self._settings, WatchStart(known.values, belief_of(known)))
         self._samples: deque[Sample] = deque()
         self._next: Watch | None = None
-        self._rarity, self._part, self._not_before_ns = 0.0, 1.0, 0
+        self._rarity, self._part, self._not_before_ns, self._told_ns = 0.0, 1.0, 0, 0
         self._owed = self._confirmed = False
         self._tried = self.watched = self.unwatched = 0
         self._draws = np.random.default_rng(1)
@@ -188,9 +188,12 @@ class OnsetMonitor:
     def _take(self) -> Iterator[Finding]:
         stretch = self.watch.advance()
         self.why_not, self.withheld, self._rarity = stretch.why_not, '', stretch.rarity
-        self.unwatched += bool(stretch.why_not)
-        self.watched += not stretch.why_not
-        self._on_stretch(stretch)
+        if stretch.end_ns > self._told_ns:
+            # Along one stretch several boards may be tried in turn.
+            self._told_ns = stretch.end_ns
+            self.unwatched += bool(stretch.why_not)
+            self.watched += not stretch.why_not
+            self._on_stretch(stretch)
         if self.watch.evidence:
             yield from self._judge(stretch.end_ns)
         if self.watch.lost or len(self.watch) > 2 * self.options.longest:
