@@ -8,14 +8,13 @@ from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
 from trawl_ros.effects.registry import catalogue
 
 TABLE = candidate_table({'attitude_mount': catalogue()['attitude_mount']})
-NAMES = [candidate.name for candidate in TABLE.candidates]
+CANDIDATES = {candidate.name: candidate for candidate in TABLE.candidates}
 
 
 def evidence(name, ratio):
-    number = NAMES.index(name)
-    values = len(TABLE.candidates[number].columns)
+    values = len(CANDIDATES[name].columns)
     return OnsetEvidence(
-        number, 4, ratio, 20.0, np.zeros(values), 1e-6 * np.eye(values), np.array([4])
+        CANDIDATES[name], 4, ratio, 20.0, np.zeros(values), 1e-6 * np.eye(values), np.array([4])
     )
 
 
@@ -24,7 +23,7 @@ def found(mount):
         evidence('port_pitch_offset', 229.3), evidence('attitude_mount', mount),
         evidence('starboard_pitch_offset', 60.0),
     ]  # fmt: skip
-    return finding(TABLE, 1, 10**12, told, 10**12, 9.0)
+    return finding(TABLE, told, 10**12, 9.0)
 
 
 def test_an_effect_that_fits_no_worse_is_told_however_many_values_it_takes():

@@ -67,7 +67,7 @@ def test_winches_that_run_are_a_manoeuvre(part, onset_samples):
         return replace(sample, lengths=(length, length), speeds=(pace, pace))
 
     *_, tow = cut(part, map(running, onset_samples(9)))
-    runs = [stretch for stretch, (warps, _) in enumerate(manoeuvres(tow)) if warps]
+    runs = np.flatnonzero(manoeuvres(tow))
     assert set(runs) >= {13, 14}
     assert set(runs) <= set(range(12, 17))
 

@@ -32,7 +32,7 @@ def watched(size, stretches=12, begin=0, manoeuvre=None):
         unrest = float(number == manoeuvre)
         marks = bank.step(link, np.repeat(lasting[None], stretches + 1, axis=0), unrest)
         seen.append((link.innovations, marks[number, :, 0]))
-    return seen, {TABLE.candidates[one.candidate].name: one for one in bank.best()}
+    return seen, {one.candidate.name: one for one in bank.best()}
 
 
 @pytest.mark.parametrize('stds', [1.0, 30.0, 1000.0])
@@ -53,7 +53,7 @@ def test_more_is_asked_for_of_an_onset_near_a_manoeuvre():
         for when in (None, begin, begin + FEWEST, begin + FEWEST + 1)
     }
     still = evidence[None]
-    freedom = len(TABLE.candidates[still.candidate].columns)
+    freedom = len(still.candidate.columns)
     assert still.age == 12 - 1 - begin
     assert still.rarity == pytest.approx(rarity(still.ratio, freedom))
     for when, one in evidence.items():
@@ -64,8 +64,9 @@ def test_more_is_asked_for_of_an_onset_near_a_manoeuvre():
 
 def test_of_onsets_that_were_discarded_there_is_no_evidence():
     bank = RatioBank(TABLE, 5)
+    none = Chain(Belief(np.zeros(0), np.eye(0))).append(*np.zeros((2, 0, 0)), np.zeros(0))
     for _ in range(4):
-        bank.step(None, np.zeros(0), 0.0)
+        bank.step(none, np.zeros((5, 0, P)), 0.0)
     assert bank.best()
     bank.forget()
     assert bank.best() == []

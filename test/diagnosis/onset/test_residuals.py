@@ -7,18 +7,19 @@ import pytest
 
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
-from trawl_ros.diagnosis.onset.part import LIVE, LogErrors
+from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.diagnosis.onset.residuals import (
+    INFLATION,
     MODEL_FACTOR_IN_MANOEUVRES,
     PASSING_MODEL_FACTOR,
     UNREST_S,
-    ErrorModel,
+    belief_of,
+    log_factor,
     residual_rows,
     unrest_of,
 )
 from trawl_ros.effects.effect_set import NO_EFFECTS
 from trawl_ros.estimation.fit.error_terms import GROUPS
-from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.processes import ErrorSizes
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, TowInputs
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
@@ -58,11 +59,10 @@ def variances(gear, linear):
     """Variances (n, k) of the residuals by what is known of the errors."""
 
     def of(known, unrest=0.0, absorbed=None):
-        errors = ErrorModel(known, 1.0)
         none = np.zeros((STRETCHES, K, 0)) if absorbed is None else absorbed
         rows = residual_rows(
-            gear, linear, errors.belief(layout_of(linear.tow, gear, 1.0)), errors,
-            log_factor=1.0, unrest=np.full(STRETCHES, unrest), absorbed=none,
+            gear, linear, belief_of(known), known,
+            log_density=1.0, unrest=np.full(STRETCHES, unrest), absorbed=none,
         )  # fmt: skip
         found = np.zeros((STRETCHES, K))
         found[rows.stretches, rows.channels] = np.diag(rows.covariance)
@@ -79,7 +79,9 @@ DENSITIES = {name: 3.0 * CHANNELS[name].noise * np.sqrt(LIVE.stretch_s) for name
 @pytest.mark.parametrize('told', [{'sizes': THRICE}, {'densities': DENSITIES}])
 def test_means_scatter_by_what_was_found(variances, told):
     more = variances(replace(KNOWN, **told)) - variances(KNOWN)
-    np.testing.assert_allclose(more, np.tile(8.0 * NOISE**2, (STRETCHES, 1)), rtol=1e-6)
+    np.testing.assert_allclose(
+        more, np.tile(8.0 * (INFLATION * NOISE) ** 2, (STRETCHES, 1)), rtol=1e-6
+    )
 
 
 def test_less_than_readings_scatter_changes_nothing(variances):
@@ -88,12 +90,10 @@ def test_less_than_readings_scatter_changes_nothing(variances):
 
 
 def test_a_log_that_is_worse_than_its_readings_show_is_as_bad_as_was_found():
-    log = LogErrors(std=0.02, slow_std=0.01, period_s=1.0)
     for told, factor in (
         ({}, 1.0), ({'densities': {'speed': 0.06}}, 3.0), ({'sizes': ErrorSizes(log=4.0)}, 4.0),
     ):  # fmt: skip
-        found = ErrorModel(replace(KNOWN, **told), 1.0).log_factor(log)
-        assert found == pytest.approx(factor)
+        assert log_factor(replace(KNOWN, **told), density=0.02) == pytest.approx(factor)
 
 
 def test_in_a_manoeuvre_the_model_is_less_exact(variances):
@@ -102,7 +102,7 @@ def test_in_a_manoeuvre_the_model_is_less_exact(variances):
     moving = variances(KNOWN, unrest=1.0) - variances(without)
     factor = MODEL_FACTOR_IN_MANOEUVRES**2 + PASSING_MODEL_FACTOR**2
     np.testing.assert_allclose(moving, factor * still, rtol=1e-6)
-    unrest = unrest_of([(False, False), (True, False), (False, False), (False, True)])
+    unrest = unrest_of([False, True, False, True])
     np.testing.assert_allclose(unrest, [0.0, 1.0, np.exp(-LIVE.stretch_s / UNREST_S), 1.0])
 
 

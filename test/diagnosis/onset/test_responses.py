@@ -39,8 +39,9 @@ def test_a_cell_shows_its_error_at_once_and_the_gear_takes_minutes(coarse_gear, 
     assert (responses.applied[:, drag] == 1.0).all()
     assert scale < 0 or responses.applied[0, scale] < 0.2
     catch = names.index('catch_build_up drag_area')
-    hours = 19.5 * 30.0 / 3600.0
-    assert grown[0, depth, catch] == pytest.approx(hours - responses.grown[19, depth, catch])
+    missing = responses.fading[:20, depth, catch]
+    expected = (19.5 - np.sum(missing) + 0.5 * missing[-1]) * 30.0 / 3600.0
+    assert grown[0, depth, catch] == pytest.approx(expected)
 
 
 def test_offsets_and_drifts_of_each_channel_and_of_both_sides_are_looked_for(table):

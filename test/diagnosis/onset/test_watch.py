@@ -10,7 +10,7 @@ from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.diagnosis.onset.part import SETTLING
-from trawl_ros.diagnosis.onset.residuals import ErrorModel
+from trawl_ros.diagnosis.onset.residuals import belief_of
 from trawl_ros.diagnosis.onset.watch import CLOSE, REST, Watch, WatchSettings, WatchStart
 from trawl_ros.effects.effect_set import effects_of
 from trawl_ros.effects.registry import catalogue
@@ -40,7 +40,7 @@ def far_off(onset_gear):
 def settings(onset_gear, far_off):
     table = candidate_table(FEW)
     gear = WatchedGear(build_model(onset_gear), effects_of(onset_gear), table.at_one_hour())
-    return WatchSettings(gear, build_water(onset_gear), table, ErrorModel(far_off, 1.2), 20)
+    return WatchSettings(gear, build_water(onset_gear), table, far_off, 20)
 
 
 def watched(watch, samples):
@@ -51,11 +51,11 @@ def watched(watch, samples):
 def test_boards_that_were_learned_are_closer_to_what_is_learned_with_them(
     settings, far_off, onset_samples
 ):
-    first = Watch(settings, WatchStart(far_off.values))
+    first = Watch(settings, WatchStart(far_off.values, belief_of(far_off)))
     watched(first, onset_samples(9))
     assert first.away > CLOSE
     assert first.learns
-    again = Watch(settings, WatchStart(first.learned))
+    again = Watch(settings, WatchStart(first.learned, belief_of(far_off)))
     watched(again, onset_samples(9))
     assert again.away < 0.5 * first.away
 
@@ -63,7 +63,7 @@ def test_boards_that_were_learned_are_closer_to_what_is_learned_with_them(
 def test_a_watch_that_begins_with_a_belief_goes_on_as_the_one_that_had_it(
     settings, far_off, onset_samples
 ):
-    whole = Watch(settings, WatchStart(far_off.values))
+    whole = Watch(settings, WatchStart(far_off.values, belief_of(far_off)))
     by_whole = watched(whole, onset_samples(9))
     first = 3
     begin_ns = whole.part.begin_ns(first)
@@ -90,7 +90,7 @@ def test_boards_far_off_are_learned_within_minutes_and_the_tow_is_judged(
     compared = [one for one in told if one.compared]
     learned = [one for one in compared if one.why_not]
     assert REST <= len(learned) <= 3 * REST
-    assert max(one.rarity for one in compared) < 0.5 * monitor.options.limit
+    assert np.nanmax([one.rarity for one in compared]) < 0.5 * monitor.options.limit
 
 
 def test_boards_with_which_nothing_can_be_compared_for_minutes_are_refused(
@@ -99,7 +99,7 @@ def test_boards_with_which_nothing_can_be_compared_for_minutes_are_refused(
     def surfaced(*_):
         raise NotPredicted('the gear of the model breaks the surface')
 
-    watch, told = Watch(settings, WatchStart(far_off.values)), []
+    watch, told = Watch(settings, WatchStart(far_off.values, belief_of(far_off))), []
     monkeypatch.setattr(TowLineariser, '_predicted', surfaced)
     for sample in onset_samples(8):
         if watch.feed(sample):

@@ -70,6 +70,19 @@ def trials_table(made: Sequence[OnsetTrial]) -> TextTable:
     )  # fmt: skip
 
 
+def reasons_table(made: Sequence[OnsetTrial]) -> TextTable:
+    """Table of the reasons for which nothing was judged."""
+    towed = sum(trial.watched_s + trial.unwatched_s for trial in made)
+    reasons = {why for trial in made for why in trial.reasons}
+    spent = {why: sum(trial.reasons.get(why, 0.0) for trial in made) for why in reasons}
+    rows = sorted(spent.items(), key=lambda row: -row[1])
+    return TextTable(
+        'Why nothing was judged',
+        ('reason', 'of the time, %'),
+        tuple((why, f'{100.0 * own / towed:.1f}') for why, own in rows),
+    )
+
+
 def known_words(made: Sequence[OnsetTrial]) -> str:
     """Sentence on what the boards were known by."""
     by = Counter(trial.known for trial in made).most_common()

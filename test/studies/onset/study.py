@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from studies.harness import Study, StudyResult, Work, option
 from studies.onset.known import KNOWN, STATE_MIN
 from studies.onset.limit import drawn_limit
-from studies.onset.rows import ASKED_H, known_words, onset_rows, trials_table
+from studies.onset.rows import ASKED_H, known_words, onset_rows, reasons_table, trials_table
 from studies.onset.sizes import TIMES
 from studies.onset.trial import CLEAN, EFFECT, OnsetTask, OnsetTrial, make_trial
 from trawl_ros.diagnosis.onset.monitor import OnsetOptions
@@ -73,7 +73,9 @@ def result(plan: OnsetPlan, trials: list[OnsetTrial]) -> StudyResult:
     text = f'Not made: {"; ".join(refused)}.' if refused else ''
     if plan.known == 'tow':
         text = f'{known_words(made)} {text}'.rstrip()
-    section = Section('Findings', onset_rows(made), tables=[trials_table(made)], text=text)
+    section = Section(
+        'Findings', onset_rows(made), tables=[trials_table(made), reasons_table(made)], text=text
+    )
     return StudyResult([section], record={'trials': [asdict(trial) for trial in trials]})
 
 

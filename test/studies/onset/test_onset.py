@@ -16,7 +16,7 @@ from studies.onset.known import (
 )
 from studies.onset.limit import drawn_rarest
 from studies.onset.plant import random_course, with_boards
-from studies.onset.rows import onset_rows
+from studies.onset.rows import onset_rows, reasons_table
 from studies.onset.sizes import STEADY_SIZES, TIMES
 from studies.onset.study import OnsetPlan, result
 from studies.onset.trial import Beginning, OnsetTask, OnsetTrial, make_trial
@@ -146,6 +146,13 @@ def test_what_boards_were_known_by_is_counted():
     told = result(OnsetPlan(known='tow'), known).sections[0].text
     assert told == 'Boards were known by all of a tow in 1, its steady windows in 1 of 2 tows.'
     assert result(OnsetPlan(), known).sections[0].text == ''
+
+
+def test_time_that_is_not_judged_is_counted_by_its_reason():
+    trials = [replace(FOUND, reasons={'begun': 213.0, 'falls': 106.5}), replace(CLEAN, reasons={})]
+    also = replace(FOUND, number=1, reasons={'falls': 213.0}, unwatched_s=0.0, watched_s=0.0)
+    rows = reasons_table([*trials, also]).rows
+    assert rows == (('falls', '5.6'), ('begun', '3.7'))
 
 
 def test_a_gear_without_boards_is_refused_at_once(pair_file):

@@ -1,6 +1,7 @@
 """Trial: a tow in which an effect begins, or none, towed by a plant and watched by the monitor."""
 
 import time
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,7 +17,7 @@ from trawl_ros.core.errors import TrawlError
 from trawl_ros.core.files import write_figure
 from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.findings import Finding
-from trawl_ros.diagnosis.onset.history import CourseKeeper, WatchedCourse
+from trawl_ros.diagnosis.onset.history import WatchedCourse
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
 from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.diagnosis.onset.watch import WatchedStretch
@@ -121,6 +122,8 @@ class OnsetTrial:
         Reason for which the trial could not be made.
     known
         Source of what was known of the boards, where it was a tow before.
+    reasons
+        Time (s) that was not judged, by the reason.
     """
 
     number: int
@@ -141,6 +144,7 @@ class OnsetTrial:
     seconds: float = 0.0
     why_not: str = ''
     known: str = ''
+    reasons: dict[str, float] = field(default_factory=dict)
     series: str = ''
 
 
@@ -170,7 +174,7 @@ def make_trial(task: OnsetTask) -> OnsetTrial:
     if effect == 'floats' and record.floats.buoyancy_n == 0.0:
         return replace(trial, why_not='the gear has no floats')
     raised: list[Finding] = []
-    keeper = CourseKeeper()
+    told: list[WatchedStretch] = []
     spent = fallen_s = 0.0
     with TemporaryDirectory() as folder:
         scenario = random_course(Path(folder), record, task.minutes, rng)
@@ -184,7 +188,7 @@ def make_trial(task: OnsetTask) -> OnsetTrial:
                 trial = replace(trial, known=by)
             # An effect that begins is none of a file: it takes the place of the plant's own.
             vars(scenario)['effect_set'] = acting
-            monitor = OnsetMonitor(believed, known, on_stretch=keeper)
+            monitor = OnsetMonitor(believed, known, on_stretch=told.append)
             for samples, fallen in towed_samples(scenario, acting):
                 fallen_s += fallen / scenario.record.truth_rate_hz
                 begun = time.process_time()
@@ -193,12 +197,13 @@ def make_trial(task: OnsetTask) -> OnsetTrial:
                 spent += time.process_time() - begun
         except TrawlError as reason:
             return replace(trial, why_not=str(reason))
-    course = keeper.course
+    course = WatchedCourse.of(told)
     if task.pictures:
         picture = Path(task.pictures) / f'{task.name.replace(" ", "_")}.png'
-        told = list(monitor.findings.values())
-        write_figure(picture, onset_figure(course, told, monitor.options.limit, 0), DPI)
+        findings = list(monitor.findings.values())
+        write_figure(picture, onset_figure(course, findings, monitor.options.limit, 0), DPI)
     first = {found.number: found for found in reversed(raised)}
+    reasons = Counter(one.why_not.partition(':')[0] for one in told if one.why_not)
     from_s = np.inf if trial.begin_s is None else trial.begin_s
     early = [one for one in first.values() if one.raised_ns / SECOND < from_s]
     later = [one for one in first.values() if one.raised_ns / SECOND >= from_s]
@@ -208,6 +213,7 @@ def make_trial(task: OnsetTask) -> OnsetTrial:
         watched_s=LIVE.stretch_s * monitor.watched,
         unwatched_s=LIVE.stretch_s * monitor.unwatched, fallen_s=fallen_s,
         rarity=float(np.nanmax(course.rarities, initial=0.0)),
+        reasons={why: LIVE.stretch_s * number for why, number in reasons.items()},
     )  # fmt: skip
     if not later:
         return trial
@@ -225,11 +231,6 @@ def clean_marks(gear: str, seed: int, minutes: float) -> list[FloatArray]:
     """
     rng = np.random.default_rng(seed)
     found: list[FloatArray] = []
-
-    def keep(stretch: WatchedStretch) -> None:
-        if stretch.marks is not None:
-            found.append(stretch.marks)
-
     with TemporaryDirectory() as folder:
         record = MeshResolution(COARSEST).model(gear)
         boards = record.board.coefficients.array()
@@ -237,12 +238,12 @@ def clean_marks(gear: str, seed: int, minutes: float) -> list[FloatArray]:
         monitor = OnsetMonitor(
             load_gear(Path(folder) / 'gear.yaml'),
             drawn_knowledge(record, boards, rng),
-            on_stretch=keep,
+            on_stretch=lambda _: found.append(monitor.watch.marks),
         )
         for samples, _ in towed_samples(scenario, NO_EFFECTS):
             for sample in samples:
                 monitor.feed(sample)
-    return found
+    return [marks for marks in found if marks.size]
 
 
 def _judged(course: WatchedCourse, from_s: float, until_s: float) -> float:

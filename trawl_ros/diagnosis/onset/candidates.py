@@ -5,12 +5,12 @@
 Each candidate has one or more values, which are the columns (p in all) of the table.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.core.arrays import BoolArray, FloatArray
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.library.drift import Drift, drifts
 from trawl_ros.effects.base.effect import WIDE, Effect, Parameter, Readings, Situation
 from trawl_ros.effects.registry import catalogue
@@ -25,7 +25,7 @@ GROWTH_UNIT_ENDING = 'per h'
 """End of the unit of a growth rate: such an effect grows linearly from its onset on."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class AtOneHour(Effect):
     """An effect one hour after its onset.
 
@@ -37,21 +37,18 @@ class AtOneHour(Effect):
         The effect itself.
     """
 
-    of: Effect | None = None
+    of: Effect
 
     def apply_to_inputs(self, values: FloatArray, inputs: FloatArray, at: Situation) -> FloatArray:
         """Apply the effect to inputs (3,), one hour after onset."""
-        assert self.of is not None
         return self.of.apply_to_inputs(values, inputs, replace(at, hours=1.0))
 
     def gear(self, values: FloatArray, model: GearModel, at: Situation) -> GearModel:
         """Apply the effect to the gear model, one hour after onset."""
-        assert self.of is not None
         return self.of.gear(values, model, replace(at, hours=1.0))
 
     def apply_to_sensors(self, values: FloatArray, readings: Readings, at: Situation) -> Readings:
         """Apply the effect to sensor readings, one hour after onset."""
-        assert self.of is not None
         return self.of.apply_to_sensors(values, readings, replace(at, hours=1.0))
 
 
@@ -100,17 +97,15 @@ class CandidateTable:
         return WIDE * np.array([parameter.std for parameter in self.parameters])
 
     @property
-    def reach(self) -> tuple[FloatArray, FloatArray]:
-        """Bounds of the values, low and high, both (p,), as departures from neutral."""
-        return (
-            np.array([parameter.low - parameter.neutral for parameter in self.parameters]),
-            np.array([parameter.high - parameter.neutral for parameter in self.parameters]),
-        )
+    def reach(self) -> FloatArray:
+        """Bounds (2, p) of the values, low and high, as departures from neutral."""
+        bounds = [np.array((one.low, one.high)) - one.neutral for one in self.parameters]
+        return np.array(bounds).T
 
     @property
-    def growing(self) -> BoolArray:
-        """Flags (p,) of the growth rates among the values."""
-        return np.array([_is_growth_rate(parameter) for parameter in self.parameters], np.bool_)
+    def growing(self) -> FloatArray:
+        """1 for the growth rates among the values (p,), else 0."""
+        return np.array([float(_is_growth_rate(parameter)) for parameter in self.parameters])
 
     def at_one_hour(self) -> tuple[Effect, ...]:
         """Return the effects, growing ones as they are one hour after their onset."""
@@ -131,26 +126,25 @@ def candidate_table(effects: Mapping[str, Effect] | None = None) -> CandidateTab
     known = catalogue() if effects is None else effects
     with_parameters = (effect for effect in known.values() if effect.parameters)
     watched_drifts = [drift for drift in drifts() if not set(drift.channels) & set(STEADY_ONLY)]
-    together: Sequence[Effect] = (*with_parameters, *watched_drifts)
-    return CandidateTable(tuple(together), tuple(_candidates(together)))
+    together = (*with_parameters, *watched_drifts)
+    return CandidateTable(together, tuple(_candidates(together)))
 
 
 def _candidates(effects: Iterable[Effect]) -> Iterable[OnsetCandidate]:
     """Yield candidates with the columns of their values, counted through all effects."""
     first = 0
     for effect in effects:
-        number = len(effect.parameters)
+        columns = tuple(range(first, first + len(effect.parameters)))
         if isinstance(effect, Drift):
             # The values of a drift are its rate and the error at its beginning, an offset.
             words = effect.instrument_in_words
-            yield OnsetCandidate(effect.name, f'{words} that drift', (first,))
+            yield OnsetCandidate(effect.name, f'{words} that drift', columns[:1])
             if effect.channels:
                 name = f'{effect.name.removesuffix("_drift")}_offset'
-                yield OnsetCandidate(name, f'{words} that are wrong', (first + 1,))
+                yield OnsetCandidate(name, f'{words} that are wrong', columns[1:])
         else:
-            columns = tuple(range(first, first + number))
             yield OnsetCandidate(effect.name, effect.sentence.rstrip('.'), columns)
-        first += number
+        first += len(columns)
 
 
 def _is_growth_rate(parameter: Parameter) -> bool:

@@ -6,6 +6,7 @@ The rows y of a tow have a joint normal distribution of covariance S = L Lᵀ. T
 of a stretch are its residuals less what the stretches before predict, white and of unit size.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,7 +64,7 @@ class Link:
 
     def whitened(self, rows: FloatArray) -> FloatArray:
         """Return rows (r, ...) in units of their errors."""
-        flat = rows.reshape(len(self.root), -1)
+        flat = rows.reshape(len(rows), math.prod(rows.shape[1:]))
         white = solve_triangular(self.root, flat, lower=True, check_finite=False)
         return np.asarray(white.reshape(rows.shape), np.float64)
 
@@ -73,7 +74,7 @@ class Chain:
 
     Parameters
     ----------
-    belief
+    before
         Distribution of the lasting parameters before the first stretch.
 
     Attributes
@@ -82,8 +83,8 @@ class Chain:
         All rows of L⁻¹ y.
     """
 
-    def __init__(self, belief: Belief) -> None:
-        self._belief, size = belief, len(belief.mean)
+    def __init__(self, before: Belief) -> None:
+        self._before, size = before, len(before.mean)
         self._root, self._columns = np.zeros((0, 0)), np.zeros((0, size))
         self.white = np.zeros(0)
 
@@ -116,7 +117,7 @@ class Chain:
 
     def belief(self, rows: int | None = None) -> Belief:
         """Return the belief after the first rows, or after all."""
-        columns, before = self._columns[:rows], self._belief
+        columns, before = self._columns[:rows], self._before
         # Posterior in units of the root: mean Cᵀ w and covariance 1 - Cᵀ C, whitened columns C.
         left = np.eye(len(before.mean)) - columns.T @ columns
         mean = before.mean + before.root @ (columns.T @ self.white[:rows])

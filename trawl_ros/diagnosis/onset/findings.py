@@ -3,7 +3,7 @@
 """Findings of a tow that goes on: what has begun, when, how large, and what else fits."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Literal
 
 from trawl_ros.core.time import SECOND
@@ -77,10 +77,6 @@ class Finding:
     def delay_s(self) -> float:
         """Time from the onset to when it was raised, s."""
         return (self.raised_ns - self.onset_ns) / SECOND
-
-    def record(self) -> dict[str, object]:
-        """Record for JSON."""
-        return asdict(self) | {'alike': list(self.alike)}
 
     def sentence(self) -> str:
         """Finding in one sentence."""

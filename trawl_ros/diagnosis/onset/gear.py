@@ -29,25 +29,20 @@ class WatchedGear:
     effects: tuple[Effect, ...]
 
     @property
-    def moving(self) -> tuple[Effect, ...]:
-        """Effects that act on the gear or on what it is towed with."""
-        return tuple(effect for effect in self.effects if acts_on_gear(effect))
-
-    @property
     def towed(self) -> TowedGear:
-        """Gear as the estimator tows it."""
-        return TowedGear(self.model, self.acting, examined=self.moving)
+        """Gear as the estimator tows it, with the effects that act on it or on its inputs."""
+        moving = tuple(effect for effect in self.effects if acts_on_gear(effect))
+        return TowedGear(self.model, self.acting, examined=moving)
 
     def counted(self, at: Situation) -> BoolArray:
         """Return flags (p,) of the values that change what counters show."""
-        shown, flags = np.array(at.inputs), []
-        for effect in self.effects:
-            for place, parameter in enumerate(effect.parameters):
-                values = effect.neutral
-                values[place] += parameter.std
-                true = effect.apply_to_inputs(values, shown.copy(), at)
-                flags.append(not np.array_equal(true[:2], shown[:2]))
-        return np.array(flags, np.bool_)
+        shown = np.array(at.inputs)
+        true = [
+            effect.apply_to_inputs(effect.neutral + step, shown.copy(), at)
+            for effect in self.effects
+            for step in np.diag([parameter.std for parameter in effect.parameters])
+        ]
+        return np.asarray(np.any(np.array(true)[:, :2] != shown[:2], axis=1), np.bool_)
 
     def by_values(self, moved: FloatArray, shown: FloatArray, at: Situation) -> FloatArray:
         """Return derivatives (k, p) of readings by the values of all effects.
@@ -67,20 +62,18 @@ class WatchedGear:
         for effect in self.effects:
             part = np.zeros((len(ROWS), len(effect.parameters)))
             if acts_on_gear(effect):
-                last = first + len(effect.parameters)
-                part, first = part + moved[:, first:last], last
-            if type(effect).apply_to_sensors is not Effect.apply_to_sensors:
-                by_sensors = by_values(
-                    self.acting, effect, lambda there: shown_values(there, observables, at)
-                )
-                part = part + by_sensors[:, ROWS].T
-            parts.append(part)
+                part += moved[:, first : first + part.shape[1]]
+                first += part.shape[1]
+            by_sensors = by_values(
+                self.acting, effect, lambda there: shown_values(there, observables, at)
+            )
+            parts.append(part + by_sensors[:, ROWS].T)
         return np.hstack(parts)
 
 
 def acts_on_gear(effect: Effect) -> bool:
     """Return True if an effect may act on the gear or on what it is towed with."""
-    own = effect.of if isinstance(effect, AtOneHour) and effect.of is not None else effect
+    own = effect.of if isinstance(effect, AtOneHour) else effect
     if isinstance(own, Drift) and not any(own.inputs):
         return False
     kind = type(own)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Course of a watched tow: its innovations and the evidence for what may have begun, over time."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,24 +30,11 @@ class WatchedCourse:
     innovations: FloatArray
     rarities: FloatArray
 
-
-class CourseKeeper:
-    """Keeper of a tow's course, as what a monitor calls after each stretch."""
-
-    def __init__(self) -> None:
-        self._rows: list[tuple[int, FloatArray, float]] = []
-
-    def __call__(self, stretch: WatchedStretch) -> None:
-        """Keep a stretch."""
-        rarity = np.nan if stretch.why_not else stretch.rarity
-        self._rows.append((stretch.end_ns, stretch.innovations, rarity))
-
-    @property
-    def course(self) -> WatchedCourse:
-        """The course so far."""
-        ends, innovations, rarities = zip(*self._rows, strict=True) if self._rows else ((),) * 3
-        return WatchedCourse(
-            np.array(ends, np.int64),
-            np.array(innovations, np.float64).reshape(-1, len(WATCHED)),
-            np.array(rarities, np.float64),
+    @classmethod
+    def of(cls, stretches: Sequence[WatchedStretch]) -> 'WatchedCourse':
+        """Return the course through some stretches."""
+        return cls(
+            np.array([one.end_ns for one in stretches], np.int64),
+            np.array([one.innovations for one in stretches]).reshape(-1, len(WATCHED)),
+            np.array([one.rarity for one in stretches], np.float64),
         )

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from trawl_ros.core.time import SECOND
 from trawl_ros.diagnosis.onset.candidates import CandidateTable
 from trawl_ros.diagnosis.onset.findings import Finding, OnsetValue
-from trawl_ros.diagnosis.onset.part import LIVE
+from trawl_ros.diagnosis.onset.part import LENGTH_NS
 from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
 
 SIMILAR_EVIDENCE = 6.0
@@ -20,52 +19,38 @@ NORMAL_QUANTILE_95 = 1.96
 
 
 def finding(
-    table: CandidateTable,
-    number: int,
-    end_ns: int,
-    evidence: Sequence[OnsetEvidence],
-    raised_ns: int,
-    limit: float,
+    table: CandidateTable, evidence: Sequence[OnsetEvidence], end_ns: int, limit: float
 ) -> Finding:
-    """Return the finding that the evidence supports.
+    """Return the finding that the evidence supports, as it is raised, without a number.
 
     Parameters
     ----------
     table
         The candidates.
-    number
-        Number of the finding.
-    end_ns
-        End (ns) of the newest stretch.
     evidence
         Evidence for all candidates, the rarest first.
-    raised_ns
-        Time (ns) at which the finding was raised.
+    end_ns
+        End (ns) of the newest stretch.
     limit
         Rarity beyond which it is raised.
     """
-    told = sorted(((weight(table, one), one) for one in evidence), key=lambda pair: -pair[0])
-    (most, best), *others = told
-    candidate = table.candidates[best.candidate]
-    length = round(LIVE.stretch_s * SECOND)
+    best, *others = sorted(evidence, key=lambda one: -weight(table, one))
+    least = weight(table, best) - SIMILAR_EVIDENCE
+    # A candidate that fits as well is listed too, however many values it has.
+    similar = [one for one in others if weight(table, one) > least or one.ratio >= best.ratio]
     return Finding(
-        number=number,
+        number=0,
         state='raised',
-        raised_ns=raised_ns,
+        raised_ns=end_ns,
         updated_ns=end_ns,
-        onset_ns=end_ns - (best.age + 1) * length,
+        onset_ns=end_ns - (best.age + 1) * LENGTH_NS,
         # An onset late in a stretch looks like one at the beginning of the next.
-        onset_low_ns=end_ns - (int(best.ages.max()) + 1) * length - length // 2,
-        onset_high_ns=end_ns - int(best.ages.min()) * length,
-        name=candidate.name,
-        words=candidate.words,
+        onset_low_ns=end_ns - (int(best.ages.max()) + 1) * LENGTH_NS - LENGTH_NS // 2,
+        onset_high_ns=end_ns - int(best.ages.min()) * LENGTH_NS,
+        name=best.candidate.name,
+        words=best.candidate.words,
         values=_values(table, best),
-        alike=tuple(
-            table.candidates[one.candidate].name
-            for weighed, one in others
-            # A candidate that fits as well is listed too, however many values it has.
-            if weighed > most - SIMILAR_EVIDENCE or one.ratio >= best.ratio
-        ),
+        alike=tuple(one.candidate.name for one in similar),
         rarity=evidence[0].rarity,
         limit=limit,
     )
@@ -73,21 +58,18 @@ def finding(
 
 def _values(table: CandidateTable, best: OnsetEvidence) -> dict[str, OnsetValue]:
     """Return a candidate's values with their 95 % intervals, within the bounds."""
-    own = [table.parameters[column] for column in table.candidates[best.candidate].columns]
-    std = np.sqrt(np.diag(best.covariance))
+    half = NORMAL_QUANTILE_95 * np.sqrt(np.diag(best.covariance))
     values = {}
-    for parameter, departure, one in zip(own, best.values, std, strict=True):
-        value = parameter.neutral + departure
-        ends = np.array([value - NORMAL_QUANTILE_95 * one, value + NORMAL_QUANTILE_95 * one])
-        low, high = np.clip(ends, parameter.low, parameter.high)
-        values[parameter.name] = OnsetValue(float(value), float(low), float(high), parameter.unit)
+    for column, departure, wide in zip(best.candidate.columns, best.values, half, strict=True):
+        own = table.parameters[column]
+        value = own.neutral + float(departure)
+        low, high = max(value - float(wide), own.low), min(value + float(wide), own.high)
+        values[own.name] = OnsetValue(value, low, high, own.unit)
     return values
 
 
 def weight(table: CandidateTable, one: OnsetEvidence) -> float:
     """Return twice the log evidence: the likelihood ratio less the Occam factor."""
-    own = list(table.candidates[one.candidate].columns)
     # The Occam factor is the determinant of the prior covariance over the posterior's.
-    known = np.linalg.slogdet(one.covariance)[1]
-    free = 2.0 * float(np.sum(np.log(table.scale[own])))
-    return one.ratio - (free - float(known))
+    free = 2.0 * np.sum(np.log(table.scale[list(one.candidate.columns)]))
+    return one.ratio - float(free - np.linalg.slogdet(one.covariance)[1])

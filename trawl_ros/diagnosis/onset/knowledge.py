@@ -15,7 +15,7 @@ from trawl_ros.core.foreign import load_json, short
 from trawl_ros.core.schema import validated
 from trawl_ros.estimation.fit.error_terms import GROUPS
 from trawl_ros.estimation.from_gear import board_prior
-from trawl_ros.estimation.motion.processes import ErrorSizes
+from trawl_ros.estimation.motion.processes import KINDS, ErrorSizes
 from trawl_ros.gear.board_parameters import CoefficientsRecord
 from trawl_ros.gear.records import GearRecord
 from trawl_ros.records.coefficients import COEFFICIENTS
@@ -76,8 +76,7 @@ def of_identification(path: Path, names: Sequence[str] = COEFFICIENTS) -> Knowle
             raise ValueError(f'covariance: found a value that is not below {MAX_VARIANCE:g}')
         np.linalg.cholesky(covariance)
         densities = _finite(known.get('noise_densities', {}))
-        sizes_found = (known.get('chain') or {}).get('sizes', {})
-        sizes = _sizes(sizes_found, sizes_found.get('log', STATED.log))
+        sizes = _sizes((known.get('chain') or {}).get('sizes', {}))
     except (ValueError, KeyError, TypeError, AttributeError, np.linalg.LinAlgError) as reason:
         raise TrawlError(
             f'{path}: {short(reason)}; expected an identification.json with '
@@ -86,17 +85,12 @@ def of_identification(path: Path, names: Sequence[str] = COEFFICIENTS) -> Knowle
     return Knowledge(values, covariance, densities, sizes.no_less_than(STATED))
 
 
-def _sizes(found: Mapping[str, dict[str, float]], log: float) -> ErrorSizes:
-    """Sizes by their record; what it does not have is as stated."""
-
-    def of(kind: str, stated: tuple[float, ...]) -> tuple[float, ...]:
-        known = _finite(found.get(kind, {}))
-        return tuple(known.get(group, size) for group, size in zip(GROUPS, stated, strict=True))
-
-    return ErrorSizes(
-        of('noise', STATED.noise), of('drift', STATED.drift), of('model', STATED.model),
-        of('state', STATED.state), _finite({'log': log})['log'],
-    )  # fmt: skip
+def _sizes(found: Mapping[str, Any]) -> ErrorSizes:
+    """Return sizes by their record; what it does not have is as stated."""
+    stated: Any = STATED.record()
+    known = {kind: _finite(stated[kind] | found.get(kind, {})) for kind in KINDS}
+    sizes: Any = {kind: tuple(known[kind][group] for group in GROUPS) for kind in KINDS}
+    return ErrorSizes(**sizes | _finite({'log': found.get('log', STATED.log)}))
 
 
 def _finite(found: Mapping[str, float]) -> dict[str, float]:

@@ -49,11 +49,9 @@ class LogBook:
     def __init__(self, path: Path) -> None:
         self.path = path
         _checked(self.older)
-        data = _checked(path)
-        whole = data.rfind(b'\n') + 1
-        if whole < len(data):
-            os.truncate(path, whole)
-        appending(path).close()
+        whole = _checked(path).rfind(b'\n') + 1
+        with appending(path) as file:
+            file.truncate(whole)
 
     @property
     def older(self) -> Path:
@@ -84,22 +82,18 @@ class LogBook:
         TrawlError
             If it cannot be written.
         """
-        line: dict[str, object] = {
-            'time': datetime.now(UTC).isoformat(timespec='milliseconds'),
-            'event': event,
-            'stamp_ns': stamp,
-            'who': who,
-        }
+        now = datetime.now(UTC).isoformat(timespec='milliseconds')
+        line: dict[str, object] = {'time': now, 'event': event, 'stamp_ns': stamp, 'who': who}
         if to:
-            line['to'] = list(to[:MOST_TOLD])
+            line['to'] = to[:MOST_TOLD]
         if finding is not None:
-            line |= {'finding': finding.number, 'sentence': finding.sentence()}
-            line |= {'onset_ns': finding.onset_ns, 'name': finding.name}
-            line['alike'] = list(finding.alike)
-        text = json.dumps(line, ensure_ascii=False)
+            line |= {
+                'finding': finding.number, 'sentence': finding.sentence(),
+                'onset_ns': finding.onset_ns, 'name': finding.name, 'alike': finding.alike,
+            }  # fmt: skip
         self._set_aside()
         with appending(self.path) as file:
-            file.write(f'{text}\n')
+            file.write(json.dumps(line, ensure_ascii=False) + '\n')
             file.flush()
             os.fsync(file.fileno())
 
@@ -115,10 +109,9 @@ class LogBook:
 
     def _set_aside(self) -> None:
         try:
-            if not self.path.exists() or self.path.stat().st_size <= MOST_BYTES:
-                return
-            _checked(self.older)
-            self.path.replace(self.older)
+            if self.path.exists() and self.path.stat().st_size > MOST_BYTES:
+                _checked(self.older)
+                self.path.replace(self.older)
         except OSError as reason:
             raise TrawlError(f'{self.path}: cannot be written ({reason.strerror})') from reason
 
@@ -135,10 +128,12 @@ def _checked(path: Path) -> bytes:
         return b''
     with open_file(path, TrawlError) as stream:
         data = stream.read(MOST_BYTES + LONGEST_LINE + 1)
-    first, *_ = data.split(b'\n', 1)
+    first, newline, _ = data.partition(b'\n')
     last = data[data.rfind(b'\n') + 1 :]
-    own = b'\n' not in data or _event(first) is not None
-    if len(data) > MOST_BYTES + LONGEST_LINE or not own or not _is_cut_line(last):
+    foreign = newline and _event(first) is None
+    # A last line without an end is the beginning of one that a kill cut short.
+    cut = last.startswith(BEGINNING) or BEGINNING.startswith(last)
+    if foreign or not cut or len(data) > MOST_BYTES + LONGEST_LINE:
         raise TrawlError(
             f'{path}: holds something other than events of a log book, and is left as it is; '
             'expected a new or empty file, or a log book'
@@ -152,8 +147,3 @@ def _event(line: bytes) -> Mapping[str, object] | None:
     except ValueError:
         return None
     return event if isinstance(event, dict) and event.keys() >= KEYS else None
-
-
-def _is_cut_line(text: bytes) -> bool:
-    """Return whether a text without an end may be the beginning of a line."""
-    return text.startswith(BEGINNING) or BEGINNING.startswith(text)

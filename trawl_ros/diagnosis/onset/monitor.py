@@ -8,24 +8,22 @@ each new one, and that watch takes the place of the first.
 """
 
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trawl_ros.diagnosis.onset.candidates import CandidateTable, candidate_table
+from trawl_ros.diagnosis.onset.candidates import candidate_table
 from trawl_ros.diagnosis.onset.findings import Finding
 from trawl_ros.diagnosis.onset.gear import WatchedGear
 from trawl_ros.diagnosis.onset.judging import finding
 from trawl_ros.diagnosis.onset.knowledge import Knowledge, of_gear_file
 from trawl_ros.diagnosis.onset.part import LENGTH_NS, SETTLING
-from trawl_ros.diagnosis.onset.ratios import OnsetEvidence
-from trawl_ros.diagnosis.onset.residuals import ErrorModel
+from trawl_ros.diagnosis.onset.residuals import belief_of
 from trawl_ros.diagnosis.onset.watch import (
     CLOSE,
     JUST_BEGUN,
     REST,
-    Absorbed,
     Watch,
     WatchedStretch,
     WatchSettings,
@@ -42,9 +40,10 @@ from trawl_ros.records.samples import Sample
 NOT_CLOSE = 'something may have begun, or boards are others: the tow is watched again first'
 """Reason why evidence beyond the limit raises no finding."""
 
-NEARER = 0.1, 0.2, 0.3, 0.4
-"""Parts of the way from the known boards to those of the gear file. Where the model cannot be
-towed, they are tried in turn. The model is linearised there first; what is known stays so."""
+DRAWS = 16
+"""Number of boards drawn from what is known that are tried in turn where the model cannot be towed.
+The model is linearised there first; what is known stays so. A gear file's own boards fell on the
+fastening points of 5 of 8 drawn plants. After the last of them the next part begins."""
 
 WHITE_LIMIT, MARGIN = 6.41, 1.4
 """Rarity that white innovations exceed once in 230 h, over all candidates and onsets, by
@@ -58,14 +57,10 @@ class OnsetOptions:
 
     Attributes
     ----------
-    window
-        Onsets that are examined.
     settled
         Stretches since its onset after which a finding stays as it is.
     limit
         Rarity beyond which a finding is raised: `MARGIN` times `WHITE_LIMIT`.
-    inflation
-        Factor on the std of errors that are stated, as for steady windows.
     again, longest
         Stretches that are watched again with other boards, at least where the tow is that long;
         and after which the watch begins with these, for its memory grows with their square.
@@ -81,10 +76,8 @@ class OnsetOptions:
         of the gear look alike; and stretches in which boards are learned after that.
     """
 
-    window: int = 60
     settled: int = 50
     limit: float = round(MARGIN * WHITE_LIMIT, 1)
-    inflation: float = 1.2
     again: int = 60
     longest: int = 180
     pace: int = 4
@@ -115,6 +108,8 @@ class OnsetMonitor:
 
     Attributes
     ----------
+    watch
+        Watch over the part of the tow that goes on.
     findings
         All of them, by number; the newest may still be open.
     watched, unwatched
@@ -136,31 +131,28 @@ class OnsetMonitor:
     ) -> None:
         gear.require_boards('whose tow could be watched')
         self.options = own = options or OnsetOptions()
-        self._known = knowledge or of_gear_file(gear)
-        self.table: CandidateTable = candidate_table(effects)
+        self._known = known = knowledge or of_gear_file(gear)
+        prior, self.table = board_prior(gear), candidate_table(effects)
+        std = np.sqrt(np.diag(known.covariance)) / prior.std
+        learning = own.learning if np.exp(np.mean(np.log(std))) > own.poorly_known else 0
         watched = WatchedGear(build_model(gear), effects_of(gear), self.table.at_one_hour())
-        prior = board_prior(gear)
-        self._usual = prior.start
-        known = np.sqrt(np.diag(self._known.covariance)) / prior.std
-        learning = own.learning if np.exp(np.mean(np.log(known))) > own.poorly_known else 0
-        errors = ErrorModel(self._known, own.inflation)
-        self._settings = WatchSettings(
-            watched, build_water(gear), self.table, errors, own.window, learning
-        )
-        self._on_stretch = on_stretch
+        water = build_water(gear)
+        self._settings = WatchSettings(watched, water, self.table, known, learning=learning)
+        self._low, self._high, self._on_stretch = prior.low, prior.high, on_stretch
         self.findings: dict[int, Finding] = {}
         self._newest = last_number
         self.reset()
 
     def reset(self) -> None:
         """Begin a new tow; findings stay."""
-        self._watch = Watch(self._settings, WatchStart(self._known.values))
+        known = self._known
+        self.watch = Watch(self._settings, WatchStart(known.values, belief_of(known)))
         self._samples: deque[Sample] = deque()
         self._next: Watch | None = None
-        self._tried, self._judged = 0, False
-        self._rarity, self._part, self._not_before_ns = 0.0, 1.0, 0
+        self._rarity, self._part, self._not_before_ns, self._told_ns = 0.0, 1.0, 0, 0
         self._owed = self._confirmed = False
-        self.watched = self.unwatched = 0
+        self._tried = self.watched = self.unwatched = 0
+        self._draws = np.random.default_rng(1)
         self.why_not, self.withheld = JUST_BEGUN, ''
 
     def feed(self, sample: Sample) -> list[Finding]:
@@ -172,7 +164,7 @@ class OnsetMonitor:
         self._samples.append(sample)
         if self._next is not None:
             self._next.feed(sample)
-        return list(self._take()) if self._watch.feed(sample) else []
+        return list(self._take()) if self.watch.feed(sample) else []
 
     def dismiss(self, number: int) -> Finding | None:
         """Take a finding for what is no effect; None where there is no such open one."""
@@ -194,19 +186,19 @@ class OnsetMonitor:
         return found
 
     def _take(self) -> Iterator[Finding]:
-        stretch = self._watch.advance()
+        stretch = self.watch.advance()
         self.why_not, self.withheld, self._rarity = stretch.why_not, '', stretch.rarity
-        if stretch.why_not:
-            self.unwatched += 1
-        else:
-            self.watched += 1
-            self._judged = True
-        self._on_stretch(stretch)
-        if stretch.evidence:
-            yield from self._judge(stretch.end_ns, stretch.evidence)
-        if self._watch.lost or len(self._watch) > 2 * self.options.longest:
+        if stretch.end_ns > self._told_ns:
+            # Along one stretch several boards may be tried in turn.
+            self._told_ns = stretch.end_ns
+            self.unwatched += bool(stretch.why_not)
+            self.watched += not stretch.why_not
+            self._on_stretch(stretch)
+        if self.watch.evidence:
+            yield from self._judge(stretch.end_ns)
+        if self.watch.lost or len(self.watch) > 2 * self.options.longest:
             self._begin_again()
-        oldest_ns = self._watch.part.begin_ns(0)
+        oldest_ns = self.watch.part.begin_ns(0)
         while self._samples and self._samples[0].stamp < oldest_ns:
             self._samples.popleft()
         self._owed = True
@@ -222,110 +214,93 @@ class OnsetMonitor:
     def _begin_again(self) -> None:
         """Begin another part behind the newest stretch.
 
-        Where the model was never towed, boards nearer to those of the gear file are tried first.
+        Where the model was never towed, other boards that are as likely are tried first.
         """
-        watch, begin_ns = self._watch, self._watch.part.end_ns
-        start = replace(watch.start, belief=watch.belief(), compared=watch.compared)
-        way, turn = self._usual - self._known.values, self._tried % (len(NEARER) + 1)
-        if watch.refused and not self._judged and np.any(way):
-            self._tried += 1
-            boards = self._known.values
-            if turn < len(NEARER):
-                boards, begin_ns = boards + NEARER[turn] * way, watch.part.begin_ns(0)
+        watch, begin_ns, belief = self.watch, self.watch.part.end_ns, self.watch.belief()
+        start = replace(watch.start, belief=belief, compared=watch.compared)
+        if watch.refused and not self.watched:
+            boards, self._tried = self._known.values, self._tried + 1
+            if self._tried % (DRAWS + 1):
+                away = belief.root @ self._draws.standard_normal(len(belief.mean))
+                boards = np.clip(watch.learned + away[: len(boards)], self._low, self._high)
+                begin_ns = watch.part.begin_ns(0)
             start = replace(start, coefficients=boards)
-        self._watch, self._next = self._watch_from(begin_ns, start), None
+        self.watch, self._next = self._watch_from(begin_ns, start), None
 
     def _catch_up(self) -> None:
-        """Watch a part of the tow again with other boards, where there is reason to."""
+        """Watch a part of the tow again with other boards, where there is reason to.
+
+        That watch is taken where its boards are closer to what is learned with them; otherwise a
+        smaller change of boards is tried.
+        """
         if self.open is not None:
             # A finding is followed by the watch that made it.
             self._next = None
             return
         if self._next is None:
             self._next = self._again()
-        other, watch, limit = self._next, self._watch, self.options.limit
+        other, watch, own = self._next, self.watch, self.options
         if other is None:
             return
-        hurry = watch.learns or self._rarity > limit
-        stretch = other.advance(self.options.hurried_pace if hurry else self.options.pace)
-        if other.lost:
-            self._refuse()
-        elif len(other) >= other.part.number:
+        hurry = watch.learns or self._rarity > own.limit
+        stretch = other.advance(own.hurried_pace if hurry else own.pace)
+        if not other.lost and len(other) < other.part.number:
+            return
+        self._next = None
+        if not other.lost:
             # Of boards a part of the way to those as learned the same evidence proves nothing.
-            self._confirmed = stretch.rarity > limit and self._part == 1.0
-            self._compare(other)
+            self._confirmed = stretch.rarity > own.limit and self._part == 1.0
+        if other.lost or (other.away >= watch.away and len(watch) <= own.longest):
+            self._part *= 0.5
+            if self._part < own.smallest_change:
+                self._settle(own.pause)
+            return
+        if watch.learns:
+            # That boards are close to what they were learned from proves nothing.
+            other.close = 0
+        self.watch = other
+        self._settle(0 if watch.learns and not self._settings.learning else REST)
 
     def _again(self) -> Watch | None:
         """Return a watch with the boards as they were learned; None without a reason for one."""
-        watch, learned, own = self._watch, self._watch.learned, self.options
+        watch, own = self.watch, self.options
         far = watch.away >= CLOSE and watch.part.end_ns >= self._not_before_ns
-        if learned is None or not (far or len(watch) > own.longest):
+        if not (far or len(watch) > own.longest):
             return None
         first = max(len(watch) - own.again - SETTLING, 0)
-        at = watch.start.coefficients
-        start = replace(
-            watch.start, coefficients=at + self._part * (learned - at),
-            belief=watch.belief(first + SETTLING),
-        )  # fmt: skip
+        at, belief = watch.start.coefficients, watch.belief(first + SETTLING)
+        there = at + self._part * (watch.learned - at)
+        start = replace(watch.start, coefficients=there, belief=belief)
         return self._watch_from(watch.part.begin_ns(first), start)
-
-    def _refuse(self) -> None:
-        """Go on with the watch as it is, and try a smaller change of boards."""
-        self._next = None
-        self._part *= 0.5
-        if self._part < self.options.smallest_change:
-            self._settle(self.options.pause)
-
-    def _compare(self, other: Watch) -> None:
-        """Take another watch where its boards are closer to what is learned with them."""
-        if other.away >= self._watch.away and len(self._watch) <= self.options.longest:
-            self._refuse()
-            return
-        hurried = self._watch.learns and not self._settings.learning
-        if self._watch.learns:
-            # That boards are close to what they were learned from proves nothing.
-            other.close = 0
-        self._watch, self._next = other, None
-        self._settle(0 if hurried else REST)
 
     def _settle(self, waits: int) -> None:
         """Stay with the watch for so many stretches."""
-        self._part, self._not_before_ns = 1.0, self._watch.part.end_ns + waits * LENGTH_NS
+        self._part, self._not_before_ns = 1.0, self.watch.part.end_ns + waits * LENGTH_NS
 
-    def _judge(self, now_ns: int, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
+    def _judge(self, now_ns: int) -> Iterator[Finding]:
         before, limit = self.open, self.options.limit
-        if before is None:
-            yield from self._raise(now_ns, evidence)
-            return
-        if evidence[0].rarity < 0.5 * limit:
-            yield self._put(replace(before, state='withdrawn', updated_ns=now_ns))
-            return
-        found = finding(self.table, before.number, now_ns, evidence, before.raised_ns, limit)
-        if found.onset_ns >= before.raised_ns:
+        found = finding(self.table, self.watch.evidence, now_ns, limit)
+        if before is not None:
+            if found.rarity >= 0.5 * limit and found.onset_ns < before.raised_ns:
+                found = replace(found, number=before.number, raised_ns=before.raised_ns)
+                if now_ns - before.onset_ns >= self.options.settled * LENGTH_NS:
+                    found = replace(found, state='settled')
+                    self._take_along(found)
+                yield self._put(found)
+                return
             # An onset after the finding was raised is that of another one.
             yield self._put(replace(before, state='withdrawn', updated_ns=now_ns))
-            yield from self._raise(now_ns, evidence)
-            return
-        if now_ns - before.onset_ns >= self.options.settled * LENGTH_NS:
-            found = replace(found, state='settled')
-            self._take_along(found)
-        yield self._put(found)
-
-    def _raise(self, now_ns: int, evidence: Sequence[OnsetEvidence]) -> Iterator[Finding]:
-        limit = self.options.limit
-        if evidence[0].rarity <= limit:
+        if found.rarity <= limit:
             self._confirmed = False
-            return
-        if self._watch.away >= CLOSE and not self._confirmed:
+        elif self.watch.away >= CLOSE and not self._confirmed:
             # Where the gear of other boards would go on is as much evidence.
             self.withheld = NOT_CLOSE
-            return
-        self._newest, self._confirmed = self._newest + 1, False
-        yield self._put(finding(self.table, self._newest, now_ns, evidence, now_ns, limit))
+        else:
+            self._newest, self._confirmed = self._newest + 1, False
+            yield self._put(replace(found, number=self._newest))
 
     def _take_along(self, found: Finding) -> None:
         """Take what was found as present, and watch for what begins beside it."""
-        (candidate,) = (one for one in self.table.candidates if one.name == found.name)
-        absorbed = [Absorbed(column, found.onset_ns) for column in candidate.columns]
-        self._watch.take_along(absorbed, found.updated_ns)
+        (columns,) = (one.columns for one in self.table.candidates if one.name == found.name)
+        self.watch.take_along(columns, found.onset_ns, found.updated_ns)
         self._next = None

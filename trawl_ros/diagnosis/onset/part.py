@@ -3,8 +3,7 @@
 """Part of a tow that is watched: stretches as the estimator cuts them, while the tow goes on."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from trawl_ros.estimation.motion.series import Series, TowRecorder
 from trawl_ros.estimation.motion.stretches import (
     COUNTER_REACH_S,
     FEWEST,
+    STEADY_ONLY,
     level_weights,
     moving_tow,
 )
@@ -35,46 +35,23 @@ SETTLING = round(STRETCHES.settling_s / STRETCHES.stretch_s)
 """Stretches at the beginning that are not compared: what the gear did before is not known."""
 
 LAG_S = 15.0
+LAG_NS = round(LAG_S * SECOND)
 """Time for which readings of a stretch are waited for."""
+
+NO_READINGS = Series(np.zeros(0), np.zeros(0))
 
 RUNNING_M_S, CHANGED_M_S = 0.05, 0.04
 """Pay-out speed beyond which a warp runs; change of the mean speed that begins another state."""
 
 
-@dataclass(frozen=True)
-class LogErrors:
-    """Errors of a log, which stay as they were first found so that covariances stay consistent.
-
-    Attributes
-    ----------
-    std, slow_std
-        Std (m/s) of a reading, and of an error that no averaging reduces.
-    period_s
-        Time between readings.
-    """
-
-    std: float
-    slow_std: float
-    period_s: float
-
-    @classmethod
-    def of(cls, log: Series) -> 'LogErrors':
-        """Return the errors by a log's readings."""
-        channel = CHANNELS['speed']
-        slow = channel.state_std(channel.bias_std(float(np.median(log.values))), STATE_SHARE)
-        return cls(log.noise, slow, float(np.median(np.diff(log.times))))
-
-    @property
-    def density(self) -> float:
-        """Noise density, m/s/√Hz."""
-        return self.std * float(np.sqrt(self.period_s))
-
-    def knots(self, duration_s: float) -> Knots:
-        """Return the knots of the errors along a tow."""
-        return knots_of_log(
-            np.arange(0.0, duration_s, self.period_s), self.std, duration_s, LIVE.knot_s,
-            LIVE.memory_s, self.slow_std, ErrorTimes().state,
-        )  # fmt: skip
+def _log_knots(log: Series, duration_s: float) -> Knots:
+    """Return the knots of a log's errors along a tow, as its readings have been so far."""
+    channel = CHANNELS['speed']
+    slow = channel.state_std(channel.bias_std(float(np.median(log.values))), STATE_SHARE)
+    return knots_of_log(
+        np.arange(0.0, duration_s, log.period_s), log.noise, duration_s, LIVE.knot_s,
+        LIVE.memory_s, slow, ErrorTimes().state,
+    )  # fmt: skip
 
 
 class WatchedPart:
@@ -92,50 +69,57 @@ class WatchedPart:
     tow
         The stretches with a course of all inputs; None before there are `FEWEST`.
     log
-        Errors of the log; None before there are `FEWEST` stretches.
+        Readings of the log through the first `FEWEST` stretches, none before. Its errors stay as
+        these show them, so that covariances stay consistent.
     """
 
     def __init__(self, pressure_to_depth: Callable[[float], float]) -> None:
         self._recorder = TowRecorder(pressure_to_depth)
         self.number = 0
         self.tow: MovingTow | None = None
-        self.log: LogErrors | None = None
+        self.log = NO_READINGS
 
     def feed(self, sample: Sample) -> bool:
         """Take a sample; return True if another stretch has ended by it."""
         self._recorder.feed(sample)
-        start = self._recorder.start_ns
-        if start is None:
-            return False
-        ended = (self._recorder.newest_ns - round(LAG_S * SECOND) - start) // LENGTH_NS
-        return ended > self.number
+        return self._recorder.start_ns is not None and self._ended > self.number
+
+    @property
+    def _ended(self) -> int:
+        return (self._recorder.newest_ns - LAG_NS - self.begin_ns(0)) // LENGTH_NS
 
     def cut(self) -> MovingTow:
-        """Return the tow up to the newest stretch that has ended.
+        """Return the tow up to the newest stretch that has ended, with all watched channels.
 
         Raises
         ------
         TrawlError
             If an input is silent, or the part is too short.
         """
-        start = self._recorder.start_ns
-        assert start is not None
-        lag = round(LAG_S * SECOND)
-        self.number = (self._recorder.newest_ns - lag - start) // LENGTH_NS
+        self.number = self._ended
         if self.number < FEWEST:
             raise TrawlError('the tow has just begun')
-        read = self._recorder.readings('the tow', self.end_ns + lag)
-        tow = _of_watched(moving_tow(read, 'the tow', LIVE))
-        if self.log is None:
-            self.log = LogErrors.of(read.series['speed'])
-        knots = tuple(
-            self.log.knots(tow.inputs.duration_s) if own.channel == 'speed' else own
-            for own in tow.inputs.knots
-        )
-        self.tow = _continued(replace(tow, inputs=replace(tow.inputs, knots=knots)), self.tow)
-        if len(self.tow) < self.number:
+        read = self._recorder.readings('the tow', self.end_ns + LAG_NS)
+        series = {name: own for name, own in read.series.items() if name not in STEADY_ONLY}
+        unread = {name: NO_READINGS for name in WATCHED if name not in series}
+        tow = moving_tow(replace(read, series=series | unread), 'the tow', LIVE)
+        if len(tow) < self.number:
             raise TrawlError('counters, log or winches are silent')
+        if self.log is NO_READINGS:
+            self.log = read.series['speed']
+        knots = (_log_knots(self.log, tow.inputs.duration_s), *tow.inputs.knots[1:])
+        tow.means[:SETTLING] = np.nan
+        if self.tow is not None:
+            # Readings are smoothed again, but stretches that were judged stay as they are.
+            for kept in ('means', 'noise', 'held_s'):
+                getattr(tow, kept)[: len(self.tow)] = getattr(self.tow, kept)
+        self.tow = replace(tow, inputs=replace(tow.inputs, knots=knots))
         return self.tow
+
+    @property
+    def log_density(self) -> float:
+        """Noise density of the log, m/s/√Hz."""
+        return self.log.noise * float(np.sqrt(self.log.period_s))
 
     @property
     def end_ns(self) -> int:
@@ -147,46 +131,19 @@ class WatchedPart:
         return (self._recorder.start_ns or 0) + stretch * LENGTH_NS
 
 
-def _of_watched(tow: MovingTow) -> MovingTow:
-    """Return a tow with all watched channels, NaN where there is no reading."""
-    places = [tow.channels.index(one) if one in tow.channels else -1 for one in WATCHED]
-    none = np.full((len(tow), 1), np.nan)
-    plain = np.full((len(tow), 1, tow.steps + 1), 1.0 / (tow.steps + 1))
-    means, noise = (np.hstack((own, none))[:, places] for own in (tow.means, tow.noise))
-    means[:SETTLING] = np.nan
-    counts = np.hstack((tow.counts, np.zeros((len(tow), 1), np.int64)))[:, places]
-    weights = np.hstack((tow.weights, plain))[:, places]
-    return replace(tow, channels=WATCHED, means=means, noise=noise, counts=counts, weights=weights)
-
-
-def _continued(tow: MovingTow, before: MovingTow | None) -> MovingTow:
-    """Return a tow whose first stretches are as they were before: they have been judged."""
-    if before is None:
-        return tow
-    n = len(before)
-    means, noise, held_s = (
-        np.concatenate((old, new[n:]))
-        for old, new in (
-            (before.means, tow.means), (before.noise, tow.noise), (before.held_s, tow.held_s),
-        )
-    )  # fmt: skip
-    return replace(tow, means=means, noise=noise, held_s=held_s)
-
-
-def manoeuvres(tow: MovingTow) -> list[tuple[bool, bool]]:
-    """Return for each stretch whether warps run, and whether the speed changes."""
-    steps, held, found = round(tow.stretch_s / tow.inputs.grid_s), None, []
-    for stretch in range(len(tow)):
-        own = slice(stretch * steps, (stretch + 1) * steps + 1)
-        runs = bool(np.max(np.abs(tow.inputs.rates[own, :2])) > RUNNING_M_S)
+def manoeuvres(tow: MovingTow) -> list[bool]:
+    """Return for each stretch whether warps run or the speed changes."""
+    steps, found = round(tow.stretch_s / tow.inputs.grid_s), []
+    held = float(np.mean(tow.inputs.values[: steps + 1, 2]))
+    for first in range(0, steps * len(tow), steps):
+        own = slice(first, first + steps + 1)
         speed = float(np.mean(tow.inputs.values[own, 2]))
-        changes = held is not None and abs(speed - held) > CHANGED_M_S
-        held = speed if changes or held is None else held
-        found.append((runs, changes))
+        changes = abs(speed - held) > CHANGED_M_S
+        held = speed if changes else held
+        found.append(changes or bool(np.max(np.abs(tow.inputs.rates[own, :2])) > RUNNING_M_S))
     return found
 
 
-@cache
 def counter_leap_shares(number: int) -> FloatArray:
     """Return the part (number,) of a counter's leap that its course has followed, by stretch.
 

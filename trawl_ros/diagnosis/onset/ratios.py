@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import chdtri, gammaln, log_ndtr, logsumexp, xlogy
 
 from trawl_ros.core.arrays import FloatArray, IntArray, Slice
-from trawl_ros.diagnosis.onset.candidates import CandidateTable
+from trawl_ros.diagnosis.onset.candidates import CandidateTable, OnsetCandidate
 from trawl_ros.diagnosis.onset.chain import Link
 
 FEWEST = 2
@@ -36,7 +36,7 @@ class OnsetEvidence:
     Attributes
     ----------
     candidate
-        Its number.
+        The candidate.
     age
         Stretches since the likeliest onset, that in which it began among them.
     ratio
@@ -50,7 +50,7 @@ class OnsetEvidence:
         Of the onsets that 95 % of the likelihood do not exclude.
     """
 
-    candidate: int
+    candidate: OnsetCandidate
     age: int
     ratio: float
     rarity: float
@@ -78,21 +78,20 @@ class RatioBank:
     """
 
     def __init__(self, table: CandidateTable, window: int) -> None:
-        self.table, self._window = table, window
-        p = len(table.parameters)
+        self.table, p = table, len(table.parameters)
         self.products, self.squares = np.zeros((window, p)), np.zeros((window, p, p))
         self._asked = np.zeros(window)
         # Rows of each stretch in the chain, and its marks (r, w, p) by age of the onset then.
         self._marks: deque[tuple[Slice, FloatArray]] = deque(maxlen=window - 1)
         self.known = 0
 
-    def step(self, link: Link | None, signatures: FloatArray, unrest: float) -> FloatArray | None:
+    def step(self, link: Link, signatures: FloatArray, unrest: float) -> FloatArray:
         """Advance by a stretch, in which another onset may lie.
 
         Parameters
         ----------
         link
-            The stretch in the chain; None where nothing was compared.
+            The stretch in the chain, without rows where nothing was compared.
         signatures : (w, r, p) array
             Of the stretch, by age of the onset.
         unrest
@@ -100,8 +99,8 @@ class RatioBank:
 
         Returns
         -------
-        array or None
-            Marks (w, r, p) of the signatures in the innovations, of unit size; None without any.
+        array
+            Marks (w, r, p) of the signatures in the innovations, of unit size.
         """
         for array in (self.products, self.squares, self._asked):
             array[1:] = array[:-1].copy()
@@ -110,10 +109,7 @@ class RatioBank:
         if unrest == 1.0:
             # An onset just before shows by what moved alone.
             self._asked[: 1 + FEWEST] = MOVING
-        self.known = min(self.known + 1, self._window)
-        if link is None:
-            self._marks.append((slice(0, 0), np.zeros((0, *self.products.shape))))
-            return None
+        self.known = min(self.known + 1, len(self.products))
         own = np.moveaxis(signatures, 1, 0).copy()
         # Before the first onset that is known there is none.
         own[:, self.known :] = 0.0
@@ -133,33 +129,27 @@ class RatioBank:
 
     def best(self) -> list[OnsetEvidence]:
         """Evidence for each candidate at its likeliest onset; the rarest first."""
-        ages = np.arange(FEWEST - 1, self.known)
-        if not len(ages):
+        if self.known < FEWEST:
             return []
-        found = []
-        scale = self.table.scale
-        low, high = self.table.reach
-        for number, candidate in enumerate(self.table.candidates):
-            own = list(candidate.columns)
-            squares = self.squares[ages][:, own][:, :, own]
-            informed = squares + np.diag(scale[own] ** -2.0)
-            products = self.products[ages][:, own]
-            values = np.linalg.solve(informed, products[..., None])[..., 0]
-            values = np.clip(values, low[own], high[own])
-            ratios = 2.0 * np.einsum('wp,wp->w', values, products) - np.einsum(
-                'wp,wpq,wq->w', values, informed, values
-            )
-            best = int(np.argmax(ratios))
-            near = ages[ratios >= ratios[best] - NEAR]
-            worth = ratios - 2.0 * np.log(10.0) * self._asked[ages]
-            found.append(
-                OnsetEvidence(
-                    number, int(ages[best]), float(ratios[best]),
-                    rarity(np.max(worth), len(own)),
-                    values[best], np.linalg.inv(informed[best]), near,
-                )
-            )  # fmt: skip
+        ages = np.arange(FEWEST - 1, self.known)
+        found = (self._evidence(candidate, ages) for candidate in self.table.candidates)
         return sorted(found, key=lambda one: -one.rarity)
+
+    def _evidence(self, candidate: OnsetCandidate, ages: IntArray) -> OnsetEvidence:
+        """Return the evidence for a candidate at the likeliest of some onsets."""
+        own = list(candidate.columns)
+        products, squares = self.products[ages][:, own], self.squares[ages][:, own][:, :, own]
+        informed = squares + np.diag(self.table.scale[own] ** -2.0)
+        values = np.linalg.solve(informed, products[..., None])[..., 0]
+        values = np.clip(values, *self.table.reach[:, own])
+        left = 2.0 * products - np.einsum('wpq,wq->wp', informed, values)
+        ratios = np.einsum('wp,wp->w', values, left)
+        best = int(np.argmax(ratios))
+        worth = ratios - 2.0 * np.log(10.0) * self._asked[ages]
+        return OnsetEvidence(
+            candidate, int(ages[best]), float(ratios[best]), rarity(np.max(worth), len(own)),
+            values[best], np.linalg.inv(informed[best]), ages[ratios >= ratios[best] - NEAR],
+        )  # fmt: skip
 
 
 def rarity(ratio: float, freedom: int) -> float:

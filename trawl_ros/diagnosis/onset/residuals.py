@@ -9,17 +9,18 @@ way and the slowest motions at the beginning of a part are in the covariance.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from trawl_ros.core.arrays import BoolArray, FloatArray, IntArray
+from trawl_ros.core.arrays import FloatArray, IntArray
 from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.chain import Belief
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
-from trawl_ros.diagnosis.onset.part import LIVE, LogErrors
+from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.estimation.motion.nuisances import TowLayout, columns, layout_of
-from trawl_ros.estimation.motion.processes import ErrorTimes, group_rows
+from trawl_ros.estimation.motion.processes import ErrorTimes, GroupRows, group_rows
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 
@@ -35,37 +36,21 @@ PASSING_MODEL_FACTOR, PASSING_S = 3.0, 30.0
 error, and time in which it fades to 1/e: boards lean over in passing."""
 
 
-@dataclass(frozen=True)
-class ErrorModel:
-    """Errors with which a tow is watched.
+INFLATION = 1.2
+"""Factor on the std of all errors that are stated, as for steady windows."""
 
-    Attributes
-    ----------
-    known
-        Knowledge of the boards and of the sizes of errors.
-    inflation
-        Factor on the std of all errors that are stated.
-    """
 
-    known: Knowledge
-    inflation: float
+def belief_of(known: Knowledge) -> Belief:
+    """Return the belief of the lasting parameters before anything is watched."""
+    covariance, number = known.covariance, len(TowLayout(len(known.values), 0, (), WATCHED))
+    roots = np.linalg.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)))
+    others = INFLATION * np.eye(number - len(roots))
+    return Belief(np.zeros(number), block_diag(roots, others))
 
-    def belief(self, layout: TowLayout) -> Belief:
-        """Return the belief of the lasting parameters before anything is watched."""
-        covariance, lasting = self.known.covariance, lasting_flags(layout)
-        roots = np.linalg.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)))
-        others = self.inflation * np.eye(int(lasting.sum()) - len(roots))
-        return Belief(np.zeros(int(lasting.sum())), block_diag(roots, others))
 
-    def noise(self, noise: FloatArray) -> FloatArray:
-        """Return the noise (n, k) of means, no less than neighbouring readings share."""
-        densities = np.array([self.known.densities.get(name, 0.0) for name in WATCHED])
-        return np.asarray(np.maximum(noise, densities / np.sqrt(LIVE.stretch_s)), np.float64)
-
-    def log_factor(self, log: LogErrors | None) -> float:
-        """Return the factor on the errors that a log's readings show."""
-        known = self.known.densities.get('speed', 0.0)
-        return max(self.known.sizes.log, known / log.density if log else 0.0)
+def log_factor(known: Knowledge, density: float) -> float:
+    """Return the factor on the errors of a log whose readings show a noise density."""
+    return max(known.sizes.log, known.densities.get('speed', 0.0) / density)
 
 
 @dataclass(frozen=True)
@@ -93,29 +78,20 @@ class ResidualRows:
     columns: FloatArray
     covariance: FloatArray
 
-    def of(self, own: BoolArray) -> 'ResidualRows':
-        """Return some rows (n,), with their covariance with all rows before."""
-        rows = np.flatnonzero(own)
-        return ResidualRows(
-            self.stretches[rows], self.channels[rows], self.model[rows], self.residual[rows],
-            self.columns[rows], self.covariance[rows, : rows[-1] + 1],
-        )  # fmt: skip
-
-
-def lasting_flags(layout: TowLayout) -> BoolArray:
-    """Return flags (p,) of the parameters that last beyond a part of a tow."""
-    flags = np.ones(len(layout), np.bool_)
-    flags[layout.slices['starts']] = flags[layout.of_knots] = False
-    return flags
+    def of(self, stretch: int) -> 'ResidualRows':
+        """Return the rows of a stretch, with their covariance with all rows before."""
+        first, last = np.searchsorted(self.stretches, (stretch, stretch + 1))
+        own = {name: array[first:last] for name, array in vars(self).items()}
+        return ResidualRows(**own | {'covariance': self.covariance[first:last, :last]})
 
 
 def residual_rows(
     gear: TowedGear,
     linear: LinearisedTow,
     belief: Belief,
-    errors: ErrorModel,
+    known: Knowledge,
     *,
-    log_factor: float,
+    log_density: float,
     unrest: FloatArray,
     absorbed: FloatArray,
 ) -> ResidualRows:
@@ -127,53 +103,52 @@ def residual_rows(
         The gear, and its tow as it was linearised.
     belief
         Distribution of the lasting parameters; coefficients as departures from the known ones.
-    errors
-        Errors of the rows.
-    log_factor
-        Factor on the log's errors.
+    known
+        Knowledge of the boards and of the sizes of errors.
+    log_density
+        Noise density (m/s/√Hz) that the log's readings show.
     unrest : (n,) array
         1 in stretches of a manoeuvre, from which it fades.
     absorbed : (n, k, a) array
         Signatures of what has been found before, each in units of its prior std.
     """
     tow, layout = linear.tow, layout_of(linear.tow, gear, 1.0)
-    known, sizes = errors.known, errors.known.sizes.tempered(errors.inflation)
-    groups = group_rows(tow, linear.values, errors.noise(tow.noise))
-    stretches, channels, model = (
-        np.concatenate([getattr(own, name) for own in groups])
-        for name in ('stretches', 'channels', 'model')
-    )
-    more = 1.0 + (MODEL_FACTOR_IN_MANOEUVRES - 1.0) * unrest
-    passing_model = PASSING_MODEL_FACTOR * unrest ** (UNREST_S / PASSING_S)
-    wider = [
-        replace(
-            own, model=more[own.stretches] * own.model,
-            noise=np.hypot(own.noise, passing_model[own.stretches] * own.model),
-        )
-        for own in groups
-    ]  # fmt: skip
+    sizes = known.sizes.tempered(INFLATION)
+    # Means scatter no less than neighbouring readings share.
+    densities = np.array([known.densities.get(name, 0.0) for name in WATCHED])
+    noise = np.maximum(tow.noise, densities / np.sqrt(LIVE.stretch_s))
+    groups = group_rows(tow, linear.values, noise)
     of_errors = block_diag(
-        *(own.covariance(sizes.of_group(n), ErrorTimes()) for n, own in enumerate(wider))
+        *(
+            _wider(own, unrest[own.stretches]).covariance(sizes.of_group(number), ErrorTimes())
+            for number, own in enumerate(groups)
+        )
     )
-    order = np.argsort(stretches, kind='stable')
-    place = stretches[order], channels[order]
+    rows = np.hstack([(own.stretches, own.channels) for own in groups])
+    order = np.argsort(rows[0], kind='stable')
+    stretches, channels = place = tuple(rows[:, order])
+    model = np.hstack([own.model for own in groups])[order]
     slopes = columns(linear, layout, np.ones(len(known.values)))[place]
-    lasting = lasting_flags(layout)
-    std = np.full(len(layout), errors.inflation)
-    std[layout.of_log] *= log_factor
-    passing = np.hstack(((slopes * std)[:, ~lasting], absorbed[place]))
+    lasting, std = np.ones(len(layout), np.bool_), np.full(len(layout), INFLATION)
+    lasting[layout.slices['starts']] = lasting[layout.of_knots] = False
+    std[layout.of_log] *= log_factor(known, log_density)
     own_columns = slopes[:, lasting] @ belief.root
-    everything = np.hstack((own_columns, passing))
+    everything = np.hstack((own_columns, (slopes * std)[:, ~lasting], absorbed[place]))
     shift = linear.by['coefficients'] @ (linear.point.coefficients - known.values)
     residual = (linear.residual + shift)[place] - slopes[:, lasting] @ belief.mean
     covariance = of_errors[np.ix_(order, order)] + everything @ everything.T
-    return ResidualRows(*place, model[order], residual, own_columns, covariance)
+    return ResidualRows(stretches, channels, model, residual, own_columns, covariance)
 
 
-def unrest_of(manoeuvres: Sequence[tuple[bool, bool]]) -> FloatArray:
+def _wider(rows: GroupRows, unrest: FloatArray) -> GroupRows:
+    """Return rows (m,) with the model's error larger, as it is in unrest (m,)."""
+    more = 1.0 + (MODEL_FACTOR_IN_MANOEUVRES - 1.0) * unrest
+    passing = PASSING_MODEL_FACTOR * unrest ** (UNREST_S / PASSING_S) * rows.model
+    return replace(rows, model=more * rows.model, noise=np.hypot(rows.noise, passing))
+
+
+def unrest_of(manoeuvres: Sequence[bool]) -> FloatArray:
     """Return the unrest (n,) of stretches: 1 in a manoeuvre, from which it fades."""
-    found, fading = np.zeros(len(manoeuvres)), np.exp(-LIVE.stretch_s / UNREST_S)
-    for stretch, moves in enumerate(manoeuvres):
-        before = found[stretch - 1] if stretch else 0.0
-        found[stretch] = 1.0 if any(moves) else fading * before
-    return found
+    fading = np.exp(-LIVE.stretch_s / UNREST_S)
+    fade = accumulate(map(float, manoeuvres), lambda unrest, moves: moves or fading * unrest)
+    return np.array(list(fade))

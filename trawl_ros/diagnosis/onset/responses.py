@@ -8,9 +8,7 @@ all times, as the motions that are slow hardly differ from state to state; it is
 derivative. `docs/onset.md` has the measured performance.
 """
 
-import itertools
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -38,31 +36,20 @@ class OnsetResponses:
     fading : (a, k, p) array
         Part of an effect long there that is still missing in the means of the stretches since,
         by the values of all effects.
-    grown : (a, k, p) array
-        Integral of that over time, in hours, up to the middle of each stretch.
     applied : (a, p) array
         Part of each value that the model's inputs have followed: 1 but for errors of counters,
         whose level in the minutes before they are.
     """
 
     fading: FloatArray
-    grown: FloatArray
     applied: FloatArray
-
-    def only(self, columns: Sequence[int]) -> 'OnsetResponses':
-        """Responses to some of the values alone."""
-        own = list(columns)
-        return replace(
-            self, fading=self.fading[..., own], grown=self.grown[..., own],
-            applied=self.applied[:, own],
-        )  # fmt: skip
 
     def since(self, lasting: FloatArray, ages: IntArray, growing: FloatArray) -> FloatArray:
         """Signatures (n, k, p) of effects that began so many stretches (n,) ago.
 
         Parameters
         ----------
-        lasting : (k, p) array
+        lasting : (k, p) or (n, k, p) array
             Change by effects that have been there for long.
         ages
             0 in the stretch with whose beginning the effect begins.
@@ -73,16 +60,12 @@ class OnsetResponses:
         known = np.minimum(ages, len(self.fading) - 1)
         steps = lasting * self.applied[known, None] - self.fading[known]
         late = _grown(1.0 - self.applied)
-        ramps = lasting * (hours[:, None] - late[known])[:, None] - self.grown[known]
-        signatures: FloatArray = steps * (1.0 - growing) + ramps * growing
-        return signatures
+        ramps = lasting * (hours[:, None] - late[known])[:, None] - _grown(self.fading)[known]
+        return np.where(growing > 0.0, ramps, steps)
 
 
 def onset_responses(
-    gear: WatchedGear,
-    coefficients: FloatArray,
-    inputs: FloatArray,
-    oldest: int,
+    gear: WatchedGear, coefficients: FloatArray, inputs: FloatArray, oldest: int
 ) -> OnsetResponses:
     """Responses at a steady state.
 
@@ -102,36 +85,34 @@ def onset_responses(
     StepFailed
         If its motion cannot be computed.
     """
-    parameters = MotionParameters(effects=gear.moving)
+    parameters = MotionParameters(effects=gear.towed.examined)
     point = InputPoint(inputs, np.zeros(3), hours=1.0)
     motion = DifferentiatedTow(
         gear.model.with_coefficients(coefficients), parameters, lambda time: point, gear.acting
     )
     lasting, own = motion.observed(), parameters.of_effects
     motion.forget(own)
-    steps, towed = round(LIVE.stretch_s / STEP_S), []
-    last = motion.observed().slopes
-    for _ in range(FOLLOWED):
-        seen = [last]
-        for _ in range(steps):
-            motion.advance(STEP_S)
-            seen.append(motion.observed().slopes)
-        last = seen[-1]
-        # The first of the two derivatives at an onset is that before it.
-        means = np.array([0.5 * (a + b) for a, b in itertools.pairwise(seen)])
-        towed.append(np.mean(means, axis=0))
-    missing = (lasting.slopes - np.array(towed))[:, ROWS, own]
+    steps, slopes = round(LIVE.stretch_s / STEP_S), [motion.observed().slopes]
+    for _ in range(FOLLOWED * steps):
+        motion.advance(STEP_S)
+        slopes.append(motion.observed().slopes)
+    # The first of the two derivatives at an onset is that before it.
+    means = 0.5 * (np.array(slopes[1:]) + np.array(slopes[:-1]))
+    towed = means.reshape(FOLLOWED, steps, *means.shape[1:]).mean(axis=1)
+    missing = (lasting.slopes - towed)[:, ROWS, own]
     shown, at = lasting.values[ROWS], point.situation
     # Errors of sensors show at once: they are not missing, and came in with each.
     at_once = gear.by_values(np.zeros_like(missing[0]), shown, at)
     fading = np.array([gear.by_values(one, shown, at) for one in missing]) - at_once
     # Beyond the towed stretches only the slowest motion is left.
     decay_s = max(slow_mode(motion.model, motion.first).decay_s, STEP_S)
-    fading = _with_tail(fading, oldest, decay_s)
+    more = np.arange(1, max(oldest - FOLLOWED, 0) + 1)
+    tail = fading[-1] * np.exp(-more * LIVE.stretch_s / decay_s)[:, None, None]
+    fading = np.concatenate((fading, tail))
     shares, counted = counter_leap_shares(oldest), gear.counted(at)
     fading[..., counted] = _followed(fading[..., counted], shares)
     applied = np.where(counted, shares[:, None], 1.0)
-    return OnsetResponses(fading, _grown(fading), applied)
+    return OnsetResponses(fading, applied)
 
 
 def _grown(values: FloatArray) -> FloatArray:
@@ -151,13 +132,3 @@ def _followed(steps: FloatArray, shares: FloatArray) -> FloatArray:
     for age, part in enumerate(np.diff(shares, prepend=0.0)):
         still[age:] += part * steps[: len(steps) - age]
     return still
-
-
-def _with_tail(fading: FloatArray, oldest: int, decay_s: float) -> FloatArray:
-    """Extend the fading parts of `FOLLOWED` stretches to the ``oldest``.
-
-    They fall to 1/e in ``decay_s``.
-    """
-    more = np.arange(1, max(oldest - len(fading), 0) + 1)
-    tail = fading[-1] * np.exp(-more * LIVE.stretch_s / decay_s)[:, None, None]
-    return np.concatenate((fading, tail))

@@ -9,9 +9,10 @@ import numpy as np
 
 from trawl_ros.core.arrays import Slice
 from trawl_ros.diagnosis.onset.findings import Finding
-from trawl_ros.diagnosis.onset.history import CourseKeeper, WatchedCourse
+from trawl_ros.diagnosis.onset.history import WatchedCourse
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.monitor import OnsetMonitor
+from trawl_ros.diagnosis.onset.watch import JUST_BEGUN, WatchedStretch
 from trawl_ros.estimation.fit.estimate import Estimate
 from trawl_ros.estimation.windows.noise_density import noise_densities
 from trawl_ros.estimation.windows.records import SteadyWindow
@@ -40,8 +41,6 @@ class OnsetsInTow:
         All that was not withdrawn.
     course
         Innovations and evidence over time.
-    limit
-        Rarity beyond which a finding is raised.
     """
 
     tow: str
@@ -51,7 +50,6 @@ class OnsetsInTow:
     why_not: str
     findings: tuple[Finding, ...]
     course: WatchedCourse
-    limit: float
 
     def sentences(self) -> list[str]:
         """Sentence for each onset, or that there was none."""
@@ -59,10 +57,8 @@ class OnsetsInTow:
             return [f'{self.tow}: could not be watched for what begins in it ({self.why_not}).']
         if not self.findings:
             return [f'{self.tow}: nothing was found to begin in {self.watched / 2:.0f} minutes.']
-        return [
-            f'{self.tow}, minute {self.minute(found):.1f}: {found.sentence()}.'
-            for found in self.findings
-        ]
+        told = self.findings
+        return [f'{self.tow}, minute {self.minute(one):.1f}: {one.sentence()}.' for one in told]
 
     def minute(self, found: Finding) -> float:
         """Minutes from the tow's first sample to an onset."""
@@ -79,14 +75,15 @@ def onsets_in(
     gear: GearRecord, knowledge: Knowledge, tow: str, samples: Iterable[Sample]
 ) -> OnsetsInTow:
     """Watch a tow from its first sample to its last."""
-    keeper = CourseKeeper()
-    monitor, start, last = OnsetMonitor(gear, knowledge, on_stretch=keeper), 0, ''
+    told: list[WatchedStretch] = []
+    monitor = OnsetMonitor(gear, knowledge, on_stretch=told.append)
+    start_ns = 0
     for sample in samples:
-        start = start or sample.stamp
+        start_ns = start_ns or sample.stamp
         monitor.feed(sample)
-        last = monitor.why_not or last
+    why_not = next((one.why_not for one in reversed(told) if one.why_not), JUST_BEGUN)
     kept = (found for found in monitor.findings.values() if found.state != 'withdrawn')
     return OnsetsInTow(
-        tow, start, monitor.watched, monitor.unwatched, last, tuple(kept), keeper.course,
-        monitor.options.limit,
+        tow, start_ns, monitor.watched, monitor.unwatched, why_not, tuple(kept),
+        WatchedCourse.of(told),
     )  # fmt: skip

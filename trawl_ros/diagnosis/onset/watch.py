@@ -12,16 +12,11 @@ from trawl_ros.core.errors import NoSteadyState, TrawlError
 from trawl_ros.diagnosis.onset.candidates import WATCHED, CandidateTable
 from trawl_ros.diagnosis.onset.chain import Belief, Chain
 from trawl_ros.diagnosis.onset.gear import WatchedGear
+from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.part import LENGTH_NS, SETTLING, WatchedPart, manoeuvres
 from trawl_ros.diagnosis.onset.ratios import OnsetEvidence, RatioBank
-from trawl_ros.diagnosis.onset.residuals import (
-    ErrorModel,
-    ResidualRows,
-    residual_rows,
-    unrest_of,
-)
+from trawl_ros.diagnosis.onset.residuals import ResidualRows, residual_rows, unrest_of
 from trawl_ros.diagnosis.onset.responses import OnsetResponses, onset_responses
-from trawl_ros.estimation.motion.nuisances import layout_of
 from trawl_ros.estimation.motion.stretches import FEWEST
 from trawl_ros.estimation.motion.towing.inputs import INPUT_ERRORS, without_errors
 from trawl_ros.estimation.motion.towing.linearised_tow import LinearisedTow
@@ -49,7 +44,7 @@ MOST_ABSORBED = 6
 
 @dataclass(frozen=True)
 class WatchedStretch:
-    """Stretch as it was watched, and the evidence after it.
+    """Stretch as it was watched.
 
     Attributes
     ----------
@@ -57,32 +52,21 @@ class WatchedStretch:
         Its end.
     innovations : (k,) array
         Innovations of the watched channels, NaN where there are none.
-    std : (k,) array
-        Std of their residuals, given all stretches before.
-    marks : (w, r, p) array
-        What the candidates would leave in the innovations, by age; None without innovations.
-    evidence
-        Evidence for each candidate, the rarest first; none where nothing was judged.
     why_not
         Reason why nothing was judged; empty where it was.
+    rarity
+        The largest rarity of all candidates after it; NaN where nothing was judged.
     """
 
     end_ns: int
     innovations: FloatArray
-    std: FloatArray
-    marks: FloatArray | None
-    evidence: tuple[OnsetEvidence, ...]
     why_not: str = ''
+    rarity: float = np.nan
 
     @property
     def compared(self) -> bool:
         """True if readings were compared with the model."""
-        return self.marks is not None
-
-    @property
-    def rarity(self) -> float:
-        """The largest rarity of all candidates, 0 where there is none."""
-        return self.evidence[0].rarity if self.evidence else 0.0
+        return bool(np.isfinite(self.innovations).any())
 
 
 @dataclass(frozen=True)
@@ -95,8 +79,8 @@ class WatchSettings:
         The gear that is watched, and the water that turns pressure into depth.
     table
         Candidates that may begin.
-    errors
-        Errors of readings and model.
+    known
+        Knowledge of the boards and of the sizes of errors.
     window
         Onsets that are examined, in stretches.
     learning
@@ -106,17 +90,9 @@ class WatchSettings:
     gear: WatchedGear
     water: Water
     table: CandidateTable
-    errors: ErrorModel
-    window: int
+    known: Knowledge
+    window: int = 60
     learning: int = 0
-
-
-@dataclass(frozen=True)
-class Absorbed:
-    """Value that has been found before: its column, and the stamp (ns) of its onset."""
-
-    column: int
-    onset_ns: int
 
 
 @dataclass(frozen=True)
@@ -128,19 +104,19 @@ class WatchStart:
     coefficients
         Boards with which the model is towed.
     belief
-        Distribution of the lasting parameters; by what is known where None.
+        Distribution of the lasting parameters.
     compared
         Stretches that were compared before.
     absorbed
-        Values that have been found before.
+        Values that have been found before: column, and stamp (ns) of the onset.
     since_ns
         Stamp (ns) before which no onset is looked for.
     """
 
     coefficients: FloatArray
-    belief: Belief | None = None
+    belief: Belief
     compared: int = 0
-    absorbed: tuple[Absorbed, ...] = ()
+    absorbed: tuple[tuple[int, int], ...] = ()
     since_ns: int = 0
 
 
@@ -156,17 +132,23 @@ class Watch:
 
     Attributes
     ----------
+    part
+        The part of the tow.
     away
         Largest change of a channel by the learned boards, in the model's own error, in the newest
         stretch.
     close
         Stretches up to now in which boards were close, up to `REST`.
+    compared
+        Stretches that were compared up to now.
+    evidence
+        Evidence for each candidate, the rarest first; none where nothing was judged.
+    marks : (w, r, p) array
+        What the candidates would leave in the newest innovations, by age.
     lost
         True if the part has ended: another has to begin.
     refused
         True if it has ended because the model cannot be towed along with these boards.
-    judged
-        True if anything was ever judged.
     """
 
     def __init__(self, settings: WatchSettings, start: WatchStart) -> None:
@@ -178,14 +160,14 @@ class Watch:
         self._lineariser = TowLineariser(self._towed, WATCHED, point)
         self._responses: OnsetResponses | None = None
         self._lasting: list[FloatArray] = []
-        self._manoeuvres: list[tuple[bool, bool]] = []
-        self._growing = settings.table.growing.astype(float)
-        self._belief = start.belief
-        self._chain: Chain | None = None
+        self._manoeuvres: list[bool] = []
+        self._chain = Chain(start.belief)
         self._bank = RatioBank(settings.table, settings.window)
         self._counts: list[int] = []
         self.compared, self.away, self.close = start.compared, 0.0, 0
-        self.lost = self.refused = self.judged = False
+        self.lost = self.refused = self._judged = False
+        self.evidence: list[OnsetEvidence] = []
+        self.marks = np.zeros((0, 0, 0))
 
     def __len__(self) -> int:
         """Return the number of stretches along which the model was towed."""
@@ -201,27 +183,24 @@ class Watch:
         return self.close < REST or self.compared < self._own.learning
 
     @property
-    def learned(self) -> FloatArray | None:
-        """Boards by the present belief; None where nothing was compared."""
-        belief = self.belief()
-        if belief is None:
-            return None
-        known = self._own.errors.known.values
-        return np.asarray(known + belief.mean[: len(known)], np.float64)
+    def learned(self) -> FloatArray:
+        """Boards by the present belief."""
+        known = self._own.known.values
+        return np.asarray(known + self.belief().mean[: len(known)], np.float64)
 
-    def belief(self, stretch: int | None = None) -> Belief | None:
-        """Return the belief before a stretch, or after all; None where nothing was compared."""
-        if self._chain is None:
-            return self._belief
+    def belief(self, stretch: int | None = None) -> Belief:
+        """Return the belief before a stretch, or after all."""
         return self._chain.belief(None if stretch is None else sum(self._counts[:stretch]))
 
-    def take_along(self, absorbed: Sequence[Absorbed], now_ns: int) -> None:
-        """Take values as present, and watch for further onsets from a stamp (ns) on."""
+    def take_along(self, columns: Sequence[int], onset_ns: int, now_ns: int) -> None:
+        """Take values as present since an onset (ns), and watch for others from a stamp on."""
         # The oldest make room.
-        every = (*self.start.absorbed, *absorbed)[-MOST_ABSORBED:]
+        found = ((column, onset_ns) for column in columns)
+        every = (*self.start.absorbed, *found)[-MOST_ABSORBED:]
         self.start = replace(self.start, absorbed=every, since_ns=now_ns)
         # With the next stretch all are appended to a new chain.
-        self._chain, self._bank = None, RatioBank(self._own.table, self._own.window)
+        self._chain = Chain(self.start.belief)
+        self._bank = RatioBank(self._own.table, self._own.window)
         self._counts.clear()
 
     def advance(self, most: int | None = None) -> WatchedStretch:
@@ -232,118 +211,98 @@ class Watch:
         most
             Number of stretches along which the model is towed at most.
         """
+        self.evidence, self.marks = [], np.zeros((0, 0, 0))
         try:
-            tow = self.part.cut()
+            return self._advanced(self.part.cut(), most)
+        except (NoSteadyState, StepFailed) as reason:
+            self.lost = self.refused = True
+            return self._not_compared(f'responses of the gear are not known: {reason}')
         except TrawlError as reason:
             self.lost = self.part.number >= FEWEST
             return self._not_compared(str(reason))
-        self._lineariser.extend(tow, np.zeros(tow.inputs.number_of_knots), most)
-        linear = self._lineariser.linearised(tow)
-        failed, done = self._lineariser.failed, len(self)
-        self.lost, self.refused = bool(failed), failed not in ('', BY_SENSOR)
-        if not self.judged and done >= SETTLING + REST:
-            in_vain = not linear.towed[done - REST : done].any()
-            self.lost, self.refused = self.lost or in_vain, self.refused or in_vain
-        if self._responses is None and linear.towed.any():
-            own, first = self._own, tow.inputs.values[0]
-            try:
-                self._responses = onset_responses(
-                    own.gear, self.start.coefficients, first, own.window
-                )
-            except (NoSteadyState, StepFailed) as reason:
-                self.lost = self.refused = True
-                return self._not_compared(f'responses of the gear are not known: {reason}')
-        if self._responses is None:
-            return self._not_compared(failed or JUST_BEGUN)
-        return self._appended(linear, self._responses)
 
     def _not_compared(self, why_not: str) -> WatchedStretch:
         if self.learns:
             # The gear may settle elsewhere: that boards were close before proves nothing.
             self.close = 0
-        none = np.full(len(WATCHED), np.nan)
-        return WatchedStretch(self.part.end_ns, none, none, None, (), why_not)
+        return WatchedStretch(self.part.end_ns, np.full(len(WATCHED), np.nan), why_not)
 
-    def _appended(self, linear: LinearisedTow, responses: OnsetResponses) -> WatchedStretch:
-        """Append the new stretches to the chain."""
-        tow, errors = linear.tow, self._own.errors
-        self._lasting += [
-            self._by_values(linear, stretch)
-            for stretch in range(len(self._lasting), len(self._lineariser))
-        ]
-        if self._belief is None:
-            self._belief = errors.belief(layout_of(tow, self._towed, 1.0))
-        if self._chain is None:
-            self._chain = Chain(self._belief)
-        # Readings are smoothed again, but stretches that were judged stay as they are.
+    def _advanced(self, tow: MovingTow, most: int | None) -> WatchedStretch:
+        """Tow the model on along a tow, and compare the new stretches."""
+        own = self._own
+        self._lineariser.extend(tow, np.zeros(tow.inputs.number_of_knots), most)
+        linear, failed = self._lineariser.linearised(tow), self._lineariser.failed
+        towed = linear.towed[: len(self)]
+        in_vain = len(self) >= SETTLING + REST and not (self._judged or towed[-REST:].any())
+        self.lost = in_vain or bool(failed)
+        self.refused = in_vain or failed not in ('', BY_SENSOR)
+        if self._responses is None:
+            if not towed.any():
+                return self._not_compared(failed or JUST_BEGUN)
+            self._responses = onset_responses(
+                own.gear, self.start.coefficients, tow.inputs.values[0], own.window
+            )
+        for stretch in range(len(self._lasting), len(self)):
+            self._lasting.append(self._by_values(linear, stretch))
         self._manoeuvres += manoeuvres(tow)[len(self._manoeuvres) :]
         unrest = unrest_of(self._manoeuvres)
         rows = residual_rows(
-            self._towed, linear, self._belief, errors,
-            log_factor=errors.log_factor(self.part.log), unrest=unrest,
-            absorbed=self._absorbed(tow, responses),
+            self._towed, linear, self.start.belief, own.known,
+            log_density=self.part.log_density, unrest=unrest,
+            absorbed=self._absorbed(len(tow), self._responses),
         )  # fmt: skip
-        why_not = {round(one.begin / tow.stretch_s): one.why for one in linear.left_out}
-        found = self._not_compared(JUST_BEGUN) if not self._counts else None
-        for stretch in range(len(self._counts), len(self._lineariser)):
-            own = rows.stretches == stretch
-            self._counts.append(int(own.sum()))
-            if own.any():
-                moved = linear.by['coefficients'][stretch, rows.channels[own]]
-                found = self._compare(rows.of(own), stretch, float(unrest[stretch]), moved)
-            else:
-                self._bank.step(None, np.zeros(0), float(unrest[stretch]))
-                found = self._not_compared(why_not.get(stretch, JUST_BEGUN))
-        assert found is not None
+        found = [
+            self._appended(rows.of(stretch), linear, stretch, float(unrest[stretch]))
+            for stretch in range(len(self._counts), len(self))
+        ][-1]
         if found.why_not:
             return found
-        self.judged = True
-        return replace(found, evidence=tuple(self._bank.best()))
+        self._judged, self.evidence = True, self._bank.best()
+        return replace(found, rarity=self.evidence[0].rarity if self.evidence else 0.0)
 
-    def _compare(
-        self, rows: ResidualRows, stretch: int, unrest: float, moved: FloatArray
+    def _appended(
+        self, rows: ResidualRows, linear: LinearisedTow, stretch: int, unrest: float
     ) -> WatchedStretch:
-        """Compare the rows (r) of a stretch; ``moved`` (r, 12) are derivatives by coefficients."""
-        assert self._chain is not None
+        """Append the rows (r) of a stretch to the chain, and compare them."""
         assert self._responses is not None
+        self._counts.append(len(rows.residual))
         link = self._chain.append(rows.covariance, rows.columns, rows.residual)
-        ages = np.arange(self._own.window)
-        signatures = self._responses.since(self._lasting[stretch], ages, self._growing)
-        marks = self._bank.step(link, signatures[:, rows.channels], unrest)
+        ages, growing = np.arange(self._own.window), self._own.table.growing
+        signatures = self._responses.since(self._lasting[stretch], ages, growing)
+        self.marks = self._bank.step(link, signatures[:, rows.channels], unrest)
+        if not len(rows.residual):
+            begin = stretch * linear.tow.stretch_s
+            why = (one.why for one in linear.left_out if one.begin <= begin < one.end)
+            return self._not_compared(next(why, JUST_BEGUN))
         why_not = LEARNS if self.learns else ''
         end_ns = self.part.begin_ns(stretch + 1)
         if why_not or end_ns <= self.start.since_ns:
             # An onset by boards that were not close is none.
             self._bank.forget()
         self.compared += 1
-        learned = self.learned
-        assert learned is not None
-        away = moved @ (learned - self.start.coefficients)
-        self.away = float(np.max(np.abs(away) / rows.model))
+        by_boards = linear.by['coefficients'][stretch, rows.channels]
+        away = by_boards @ (self.learned - self.start.coefficients) / rows.model
+        self.away = float(np.max(np.abs(away)))
         if self.learns:
             self.close = min(self.close + 1, REST) if self.away < CLOSE else 0
-        innovations, std = np.full((2, len(WATCHED)), np.nan)
+        innovations = np.full(len(WATCHED), np.nan)
         innovations[rows.channels] = link.innovations
-        std[rows.channels] = np.linalg.norm(link.root, axis=1)
-        return WatchedStretch(end_ns, innovations, std, marks, (), why_not)
+        return WatchedStretch(end_ns, innovations, why_not)
 
     def _by_values(self, linear: LinearisedTow, stretch: int) -> FloatArray:
         """Return the derivatives (k, p) of a stretch by the values of all effects."""
-        tow = linear.tow
-        at = without_errors(tow.inputs)(float(tow.middles[stretch])).situation
+        at = without_errors(linear.tow.inputs)(float(linear.tow.middles[stretch])).situation
         values, by = np.nan_to_num(linear.values[stretch]), linear.by['examined'][stretch]
         return self._own.gear.by_values(by, values, replace(at, hours=1.0))
 
-    def _absorbed(self, tow: MovingTow, responses: OnsetResponses) -> FloatArray:
+    def _absorbed(self, number: int, responses: OnsetResponses) -> FloatArray:
         """Return the signatures (n, k, a) of what has been found before, per prior std."""
-        found = np.zeros((*tow.means.shape, len(self.start.absorbed)))
-        scale = self._own.table.scale
-        for place, one in enumerate(self.start.absorbed):
-            own, known = [one.column], responses.only([one.column])
-            for stretch, lasting in enumerate(self._lasting):
-                age = round((self.part.begin_ns(stretch) - one.onset_ns) / LENGTH_NS)
-                if age >= 0:
-                    ages, growing = np.array([age]), self._growing[own]
-                    since = known.since(lasting[:, own], ages, growing)
-                    found[stretch, :, place] = scale[one.column] * since[0, :, 0]
+        found = np.zeros((number, len(WATCHED), len(self.start.absorbed)))
+        begins = np.array([self.part.begin_ns(stretch) for stretch in range(len(self))])
+        for place, (column, onset_ns) in enumerate(self.start.absorbed):
+            ages = np.rint((begins - onset_ns) / LENGTH_NS).astype(np.int64)
+            lasting, growing = np.array(self._lasting), self._own.table.growing
+            since = responses.since(lasting, np.maximum(ages, 0), growing)[..., column]
+            here = self._own.table.scale[column] * since
+            found[: len(self), :, place] = np.where(ages[:, None] >= 0, here, 0.0)
         return found

@@ -72,6 +72,7 @@ def _began(diagnosis: Diagnosis) -> list[Drawing]:
     watched = [tow for tow in diagnosis.onsets if tow.watched]
     if not watched:
         return []
+    from trawl_ros.diagnosis.onset.monitor import OnsetOptions
     from trawl_ros.diagnosis.report.onset_figure import onset_figure
 
     return [
@@ -80,7 +81,7 @@ def _began(diagnosis: Diagnosis) -> list[Drawing]:
             f'{tow.tow} as it was watched. Above: what each channel shows more than the '
             'model predicted, in standard deviations. Below: the evidence for the rarest '
             'candidate; beyond the dashed limit a finding is raised.',
-            onset_figure(tow.course, tow.findings, tow.limit, tow.start_ns), BEGAN,
+            onset_figure(tow.course, tow.findings, OnsetOptions().limit, tow.start_ns), BEGAN,
         )
         for number, tow in enumerate(watched, start=1)
     ]  # fmt: skip

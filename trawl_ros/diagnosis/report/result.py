@@ -4,6 +4,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import asdict
 
 from trawl_ros.core.version import __version__
 from trawl_ros.diagnosis.diagnosis import Diagnosis, values_of
@@ -143,7 +144,7 @@ def _onsets(diagnosis: Diagnosis) -> list[dict[str, object]]:
             'minutes_watched': 0.5 * tow.watched,
             'minutes_without_a_prediction': 0.5 * tow.unwatched,
             'why_not': tow.why_not,
-            'findings': [found.record() | {'minute': tow.minute(found)} for found in tow.findings],
+            'findings': [asdict(found) | {'minute': tow.minute(found)} for found in tow.findings],
         }
         for tow in diagnosis.onsets
     ]

@@ -69,6 +69,11 @@ class Series:
     def __len__(self) -> int:
         return len(self.times)
 
+    @property
+    def period_s(self) -> float:
+        """Median time between readings, s."""
+        return float(np.median(np.diff(self.times)))
+
 
 @dataclass(frozen=True)
 class TowReadings:
@@ -257,8 +262,7 @@ def payout_by_counter(counter: Series) -> Series:
     first = np.flatnonzero(later < len(times))
     last = later[first]
     speeds = (values[last] - values[first]) / (times[last] - times[first])
-    period = float(np.median(np.diff(times)))
-    speeds = _median(speeds, 1 + 2 * round(MEDIAN_REACH_S / period))
+    speeds = _median(speeds, 1 + 2 * round(MEDIAN_REACH_S / counter.period_s))
     speeds[np.abs(speeds) < STANDS_M_S] = 0.0
     return Series(0.5 * (times[first] + times[last]), speeds)
 
