@@ -133,7 +133,9 @@ def fit_tows(
         towed_gear(gear, net=net),
     )
     start = None
-    if estimate is not None:
+    if identification is not None and estimate is not None:
+        known = identification.estimator.fit.windows
+        towed = replace(towed, near=tuple(linear.state for linear in known))
         layouts = [layout_of(tow, towed, options.model) for tow in tows]
         start = place_at(estimate.values, prior, layouts)
     done = 0.0

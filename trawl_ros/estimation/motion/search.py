@@ -30,6 +30,7 @@ from trawl_ros.estimation.motion.towing.lineariser import TowLineariser
 from trawl_ros.estimation.motion.towing.records import MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear
 from trawl_ros.estimation.motion.weights import robust_factors
+from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.motion.guide import TowGuide
 from trawl_ros.solver.motion.parameters import NET
 
@@ -80,6 +81,7 @@ class MotionSearch:
     found: int = 0
     guides: Guides = field(default_factory=dict)
     last_guides: Guides = field(default_factory=dict)
+    last_near: list[Equilibrium] = field(default_factory=list)
 
     def linearise(
         self, at: Place, iteration: int, before: Sequence[BoolArray] | None = None
@@ -100,9 +102,10 @@ class MotionSearch:
         NoSteadyState
             As soon as more than `LOST` of those before are lost: the rest need not be predicted.
         """
-        found = []
+        found: list[LinearisedTow] = []
         spare = 0 if before is None else most_lost(before)
         self.towings += 1
+        self.last_near = []
         for number, (tow, layout, z) in enumerate(zip(self.tows, self.layouts, at, strict=True)):
             point = point_of(tow, layout, z, self.prior.start, self.prior.std)
             towed = TowLineariser(
@@ -112,6 +115,7 @@ class MotionSearch:
             self.last_guides[number] = towed.guides
             required = None if before is None else before[number]
             towed.extend(tow, point.drifts, required=required, spare=spare)
+            self.last_near += towed.equilibria
             found.append(towed.linearised(tow))
             if required is not None:
                 spare -= int(np.sum(required & ~found[-1].towed))
@@ -126,7 +130,12 @@ class MotionSearch:
         """Predict all tows where the search begins."""
         self.noise, self.sizes = tuple(tow.noise for tow in self.tows), self.options.sizes
         self.linear = self.linearise(self.here, 0)
+        self._keep_near()
+
+    def _keep_near(self) -> None:
+        """Keep time steps and equilibria of the last towing, from which the next one starts."""
         self.guides = dict(self.last_guides)
+        self.gear = replace(self.gear, near=tuple(self.last_near) or self.gear.near)
 
     def data(self, linear: Sequence[LinearisedTow], at: Place) -> LinearData:
         """Rows of linearised tows, by the weights as they are."""
@@ -244,7 +253,8 @@ class MotionSearch:
         self.linear = (
             tried if self.found < PREDICTIONS_TO_FIND_ERRORS else without(tried, self.linear)
         )
-        self.here, self.guides = list(place), dict(self.last_guides)
+        self.here = list(place)
+        self._keep_near()
         return ''
 
     def is_lower(

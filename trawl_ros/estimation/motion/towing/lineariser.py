@@ -28,6 +28,7 @@ from trawl_ros.estimation.motion.towing.moving import MovingCourse, MovingGear
 from trawl_ros.estimation.motion.towing.records import LeftOut, MovingTow
 from trawl_ros.estimation.motion.towing.towed_gear import TowedGear, TowedPoint
 from trawl_ros.estimation.windows.records import WindowOptions
+from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.motion.guide import TowGuide
 from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.tow import DifferentiatedTow
@@ -72,6 +73,8 @@ class TowLineariser:
         Measured channels.
     guides
         Time steps of each moving part here.
+    equilibria
+        Equilibria that were found.
     """
 
     def __init__(
@@ -86,6 +89,7 @@ class TowLineariser:
         self._gear, self._point, self._on_stretch = gear, point, on_stretch
         self.channels = channels
         self._held: HeldGear | None = None
+        self.equilibria: list[Equilibrium] = []
         self._moving: MovingGear | None = None
         self._amplitudes: Linearisation | None = None
         self._since = 0.0
@@ -191,9 +195,19 @@ class TowLineariser:
         """Equilibrium of mean inputs, that found last where it is near enough."""
         held = self._held
         if held is None or np.any(np.abs(mean.values - held.inputs) > NEARBY):
-            start = None if held is None else held.equilibrium
-            self._held = held = hold_gear(self._gear, self._point, mean, self.channels, start)
+            self._held = held = self._sought(mean)
+            self.equilibria.append(held.equilibrium)
         return held
+
+    def _sought(self, mean: MeanInputs) -> HeldGear:
+        """Equilibrium of mean inputs, sought from that found last, from one nearby, and without."""
+        starts = *self.equilibria[-1:], *self._gear.nearest(mean.values)
+        for start in starts:
+            try:
+                return hold_gear(self._gear, self._point, mean, self.channels, start)
+            except NoSteadyState:
+                continue
+        return hold_gear(self._gear, self._point, mean, self.channels)
 
     def _in_steady(self, tow: MovingTow, stretch: int) -> Linearisation:
         """Means of a steady stretch."""

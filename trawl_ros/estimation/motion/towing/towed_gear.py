@@ -14,6 +14,7 @@ from trawl_ros.effects.registry import catalogue
 from trawl_ros.model.gear_model import GearModel
 from trawl_ros.records.observables import OBSERVABLES
 from trawl_ros.solver.effect_sensitivity import sensor_slopes, shown_values
+from trawl_ros.solver.equilibrium import Equilibrium
 from trawl_ros.solver.motion.parameters import NET, MotionParameters
 from trawl_ros.solver.motion.readings import MotionPrediction
 from trawl_ros.solver.motion.tow import DifferentiatedTow
@@ -33,12 +34,24 @@ class TowedGear:
         Prior std of the factors on drag and weight in water of the net; 0 where these are held.
     examined
         Effects by whose values the tow is differentiated too.
+    near
+        Equilibria of it with other coefficients or inputs, from which one is sought.
     """
 
     model: GearModel
     acting: EffectSet = NO_EFFECTS
     net_std: float = 0.0
     examined: tuple[Effect, ...] = ()
+    near: tuple[Equilibrium, ...] = ()
+
+    def nearest(self, inputs: FloatArray) -> tuple[Equilibrium, ...]:
+        """Equilibrium whose warp lengths and speed are nearest to inputs (3,); none without any."""
+
+        def away(known: Equilibrium) -> float:
+            at = known.point.port_length, known.point.starboard_length, known.point.speed
+            return float(np.abs(np.array(at) / inputs - 1.0).sum())
+
+        return (min(self.near, key=away),) if self.near else ()
 
     def with_added_mass(self, part: float) -> EffectSet:
         """Effects with an added mass of the boards beside that in the gear file."""
