@@ -259,37 +259,46 @@ def _starting_slopes(
         solve_refined(known.factor, right), velocities, *np.zeros((2, model.dof, number))
     )
     if parameters.motions:
-        rates, shapes = slow_motions(model, state, tow, parameters.motions)
+        places, paces, accelerations = slow_motions(model, state, tow, parameters.motions)
         own = parameters.of_motions
-        slopes.places[:, own] = shapes
-        slopes.velocities[:, own] = shapes * rates
-        slopes.accelerations[:, own] = slopes.averaged[:, own] = shapes * rates**2
+        slopes.places[:, own], slopes.velocities[:, own] = places, paces
+        slopes.accelerations[:, own] = slopes.averaged[:, own] = accelerations
     return slopes
 
 
 def slow_motions(
     model: GearModel, state: State, tow: Tow, number: int
-) -> tuple[FloatArray, FloatArray]:
-    """Find the slowest motions that decay without oscillation: rates (k,), 1/s, shapes (dof, k).
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Find the slowest motions that decay by more than they swing: |Re λ| > |Im λ|.
 
-    The largest displacement of a node in a shape is 1 m.
+    Two that decay alike become a pair λ, λ* with the least change of the gear. It has the shapes
+    Re v and Im v, so that what the motions span changes little.
+
+    Returns
+    -------
+    tuple of (dof, number) arrays
+        Shapes, whose largest displacement of a node is 1 m, their velocities and accelerations.
 
     Raises
     ------
     NoSteadyState
         If there are fewer of them.
     """
-    wanted = number + EXTRA_MODES
     motion = linearised_motion(model, state, tow)
-    rates, vectors = motion.nearest(0.0, wanted, tolerance=1e-8)
-    still = np.abs(rates.imag) <= 1e-6 * np.abs(rates)
-    quiet = np.flatnonzero(still & (rates.real < 0.0))
-    if len(quiet) < number:
+    rates, vectors = motion.nearest(0.0, number + EXTRA_MODES, tolerance=1e-8)
+    paired = np.abs(rates.imag) > 1e-6 * np.abs(rates)
+    quiet = (rates.real < 0.0) & (np.abs(rates.imag) < np.abs(rates.real)) & (rates.imag >= 0.0)
+    columns = []
+    for mode in sorted(np.flatnonzero(quiet), key=lambda mode: -rates.real[mode]):
+        courses = [rates[mode] ** power * vectors[:, mode] for power in range(3)]
+        columns.append([course.real for course in courses])
+        if paired[mode]:
+            columns.append([course.imag for course in courses])
+    if len(columns) < number:
         raise NoSteadyState(
-            f'found {len(quiet)} slow motions of the gear that decay, expected {number}'
+            f'found {len(columns)} slow motions of the gear that decay, expected {number}'
         )
-    chosen = quiet[np.argsort(-rates.real[quiet])[:number]]
-    shapes = vectors[:, chosen].real
-    sizes = np.abs(shapes[: 3 * model.nodes]).max(axis=0)
-    signs = np.sign(shapes[np.abs(shapes[: 3 * model.nodes]).argmax(axis=0), range(number)])
-    return rates.real[chosen], shapes * signs / sizes
+    places, paces, accelerations = np.array(columns[:number]).transpose(1, 2, 0)
+    ways = places[: 3 * model.nodes]
+    largest = ways[np.abs(ways).argmax(axis=0), range(number)]
+    return places / largest, paces / largest, accelerations / largest

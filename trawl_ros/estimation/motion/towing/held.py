@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import expm
 
 from trawl_ros.core.arrays import FloatArray
 from trawl_ros.estimation.motion.towing.inputs import MeanInputs
@@ -38,8 +39,8 @@ class HeldGear:
         Derivatives by the inputs.
     shapes : (k, m) array
         Derivatives by the amplitudes (m) of the slowest motions.
-    rates : (m,) array
-        Their rates, 1/s.
+    paces : (m, m) array
+        Rates of change of the amplitudes by the amplitudes, 1/s.
     projection : (m, k) array
         Amplitudes of the slowest motions by departures of the channels, in least squares.
     """
@@ -49,7 +50,7 @@ class HeldGear:
     base: Linearisation
     by_inputs: FloatArray
     shapes: FloatArray
-    rates: FloatArray
+    paces: FloatArray
     projection: FloatArray
 
     def at(self, mean: MeanInputs) -> Linearisation:
@@ -62,7 +63,7 @@ class HeldGear:
 
     def decayed(self, amplitudes: Linearisation, seconds: float) -> Linearisation:
         """Amplitudes of the slowest motions so many seconds later."""
-        return amplitudes.through(np.diag(np.exp(self.rates * seconds)))
+        return amplitudes.through(expm(self.paces * seconds))
 
 
 def projection(shapes: FloatArray, channels: Sequence[str]) -> FloatArray:
@@ -113,10 +114,9 @@ def hold_gear(
     towed = DifferentiatedTow(model, parameters, lambda time: at, acting, start)
     seen = gear.observed(towed, at.situation, channels)
     shapes, own = seen.slopes[:, parameters.of_motions], parameters.of_motions
-    vectors = towed.slopes.places[:, own]
-    rates = np.sum(vectors * towed.slopes.velocities[:, own], axis=0) / np.sum(vectors**2, axis=0)
+    places, paces = towed.slopes.places[:, own], towed.slopes.velocities[:, own]
     return HeldGear(
         mean.values, towed.first, Linearisation(seen.values, gear.parts(seen.slopes, parameters)),
-        seen.slopes[:, parameters.of_inputs], shapes, rates,
+        seen.slopes[:, parameters.of_inputs], shapes, np.linalg.pinv(places) @ paces,
         projection(shapes, channels),
     )  # fmt: skip

@@ -200,8 +200,11 @@ class TowLineariser:
         return held
 
     def _sought(self, mean: MeanInputs) -> HeldGear:
-        """Equilibrium of mean inputs, sought from that found last, from one nearby, and without."""
-        starts = *self.equilibria[-1:], *self._gear.nearest(mean.values)
+        """Equilibrium of mean inputs, sought from one known nearby, that found last, and without.
+
+        That found last may be far away, and lead to another branch with the least change.
+        """
+        starts = *self._gear.nearest(mean.values), *self.equilibria[-1:]
         for start in starts:
             try:
                 return hold_gear(self._gear, self._point, mean, self.channels, start)
