@@ -72,7 +72,7 @@ def test_who_ends_a_node_waits_for_no_fit(learner, gear):
 
 
 def test_neither_windows_nor_motion_is_refused_with_both_reasons(learner, gear):
-    learner._live.finish = lambda *_: (_ for _ in ()).throw(TrawlError('lasts 9 s'))
+    learner._live.finish = lambda *_, **__: (_ for _ in ()).throw(TrawlError('lasts 9 s'))
     nothing = SimpleNamespace(estimate=None, why_not=lambda: 'no steady window was found, so')
     with pytest.raises(TrawlError, match='lasts 9'):
         ReportWriter(gear, None, None, learner)(nothing)
