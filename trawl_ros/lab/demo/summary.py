@@ -47,8 +47,9 @@ def refitted_line(result: Mapping[str, Any], truth: Mapping[str, float]) -> str:
     held = sum(
         own['low'] <= truth[name] <= own['high'] for name, own in result['coefficients'].items()
     )
+    data = result.get('chain', {}).get('fitted', f'{result["windows"]} steady windows')
     return (
-        f'The boards were refitted from {result["windows"]} steady windows; the model errs less: '
+        f'The boards were refitted from {data}; the model errs less: '
         f'{errors}. {held} of {len(truth)} intervals hold the true coefficient.'
     )
 
