@@ -174,7 +174,7 @@ def _in_motion(plan: 'TrialPlan') -> str:
     """Return what a fit of the whole tow will know, or why that is not known."""
     known = plan.in_motion
     if known is None:
-        return f'What a fit of the whole tow will know cannot be told: {plan.windows_only}.'
+        return f'The model was not towed along the plan: {plan.windows_only}.'
     steady, whole = known.steady.well_known, known.whole.well_known
     told = (
         f'By the steady parts of the tow {steady.sum()} of {len(steady)} are well known; with '

@@ -158,8 +158,8 @@ def fit_tows(
         raise TrawlError('the model cannot be towed along any stretch of the tows')
     if identification is not None and not fit.converged:
         # Intervals of a place that is not at rest mean nothing, and the windows have theirs.
-        raise TrawlError(f'the fit of the {"steady parts" if steady else "whole tow"} did not '
-                         f'converge: {fit.reason}')  # fmt: skip
+        what = 'the steady parts' if steady else 'the whole tow'
+        raise TrawlError(f'the fit of {what} did not converge: {fit.reason}')
     held_out = hold_out_states(fit, prior, numbers, options)
     return MotionOutcome(fit, prior, tuple(numbers), tuple(refused), held_out)
 

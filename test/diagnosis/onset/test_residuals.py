@@ -9,9 +9,9 @@ from trawl_ros.diagnosis.onset.candidates import WATCHED
 from trawl_ros.diagnosis.onset.knowledge import Knowledge
 from trawl_ros.diagnosis.onset.part import LIVE
 from trawl_ros.diagnosis.onset.residuals import (
-    INFLATION,
     MODEL_FACTOR_IN_MANOEUVRES,
     PASSING_MODEL_FACTOR,
+    STATED_STD_FACTOR,
     UNREST_S,
     belief_of,
     log_factor,
@@ -80,7 +80,7 @@ DENSITIES = {name: 3.0 * CHANNELS[name].noise * np.sqrt(LIVE.stretch_s) for name
 def test_means_scatter_by_what_was_found(variances, told):
     more = variances(replace(KNOWN, **told)) - variances(KNOWN)
     np.testing.assert_allclose(
-        more, np.tile(8.0 * (INFLATION * NOISE) ** 2, (STRETCHES, 1)), rtol=1e-6
+        more, np.tile(8.0 * (STATED_STD_FACTOR * NOISE) ** 2, (STRETCHES, 1)), rtol=1e-6
     )
 
 

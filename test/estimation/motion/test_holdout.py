@@ -104,3 +104,8 @@ def test_one_state_cannot_be_left_out(gear):
     found = hold_out_states(fit, board_prior(gear), (0,), MotionOptions())
     assert found.groups == 1
     assert np.isnan(found.predicted).all()
+
+
+def test_states_of_two_parts_of_a_tow_are_counted_apart(gear):
+    found, _ = reached(fit_of(0, tows=2), gear, (0, 0))
+    assert (found.by, found.groups) == ('state', 4)

@@ -85,3 +85,17 @@ def swift_haul():
     tow = course_tow(80.0)
     values = 2.0 * tow.inputs.values - tow.inputs.values[0]
     return replace(tow, inputs=replace(tow.inputs, values=values, rates=2.0 * tow.inputs.rates))
+
+
+def test_equilibria_that_were_found_are_where_the_next_towing_starts(coarse, gear):
+    search = search_from(coarse, gear)
+    tow = search.tows[0]
+    search.tows = [replace(tow, held_s=np.full(len(tow), 600.0)).only_steady()]
+    search.begin()
+    assert search.gear.near
+    inputs = tow.inputs.values[-1]
+    (nearest,) = search.gear.nearest(inputs)
+    away = [abs(known.point.port_length - inputs[0]) for known in search.gear.near]
+    assert abs(nearest.point.port_length - inputs[0]) == min(away)
+    again = search.linearise(search.here, 1)
+    np.testing.assert_allclose(again[0].values, search.linear[0].values, rtol=1e-6)

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from scipy.linalg import block_diag
 
+from trawl_ros.core.arrays import FloatArray
 from trawl_ros.diagnosis.inference.candidates import Candidate
 from trawl_ros.effects.effect_set import ActiveEffect, EffectSet
 from trawl_ros.effects.registry import catalogue
@@ -22,7 +24,7 @@ from trawl_ros.solver.first_guess import at_velocity
 from trawl_ros.solver.motion.course import InputPoint, course_point
 from trawl_ros.solver.motion.parameters import MotionParameters
 from trawl_ros.solver.motion.stepper import DAMPED, LinearisedStepOptions
-from trawl_ros.solver.motion.tow import DifferentiatedTow, slow_motions
+from trawl_ros.solver.motion.tow import DifferentiatedTow, decaying_courses, slow_motions
 from trawl_ros.solver.relax import relax
 from trawl_ros.solver.stepper import StepFailed, Stepper, at_rest
 
@@ -258,6 +260,39 @@ def test_slow_motions_die_out_as_they_should(model: GearModel) -> None:
     depth = OBSERVABLES.index('port_door_depth')
     # The doors may move against each other, which says little of the net's depth.
     np.testing.assert_allclose(left[depth], np.exp(rates * tow.time), rtol=1e-4)
+
+
+def courses_of(split: float) -> tuple[FloatArray, FloatArray]:
+    """Matrix with the eigenvalues -0.5, -1 ± √split, -5 and -2 ± 5i, and its slow courses."""
+    rng = np.random.default_rng(3)
+    pair, swing = np.array([[-1.0, split], [1.0, -1.0]]), np.array([[-2.0, 5.0], [-5.0, -2.0]])
+    basis = rng.standard_normal((6, 6))
+    matrix = basis @ block_diag(-0.5, pair, -5.0, swing) @ np.linalg.inv(basis)
+    return matrix, decaying_courses(*np.linalg.eig(matrix))
+
+
+@pytest.mark.parametrize('split', [1e-4, -1e-4])
+def test_motions_are_courses_of_the_system_and_those_that_swing_are_none(split: float) -> None:
+    matrix, courses = courses_of(split)
+    assert len(courses) == 4
+    places, paces, accelerations = courses.transpose(1, 2, 0)
+    np.testing.assert_allclose(paces, matrix @ places, atol=1e-9)
+    np.testing.assert_allclose(accelerations, matrix @ paces, atol=1e-9)
+
+
+def test_what_slow_motions_span_does_not_jump_where_two_become_a_pair() -> None:
+    spans = []
+    for split in (1e-6, -1e-6):
+        places = courses_of(split)[1][:3, 0].T
+        spans.append(places @ np.linalg.pinv(places))
+    np.testing.assert_allclose(*spans, atol=1e-4)
+
+
+def test_of_a_pair_one_eigenvalue_is_enough() -> None:
+    vectors = np.array([[1.0, 1.0], [0.5 + 0.1j, 0.5 - 0.1j]])
+    rates = np.array([-1.0 - 0.5j, -1.0 + 0.5j])
+    for kept in ([0], [1], [0, 1]):
+        assert len(decaying_courses(rates[kept], vectors[:, kept])) == 2
 
 
 def test_without_parameters_it_is_the_plain_tow(model: GearModel) -> None:

@@ -40,7 +40,7 @@ from trawl_ros.records.samples import Sample
 NOT_CLOSE = 'something may have begun, or boards are others: the tow is watched again first'
 """Reason why evidence beyond the limit raises no finding."""
 
-DRAWS = 16
+BOARDS_TRIED = 16
 """Number of boards drawn from what is known that are tried in turn where the model cannot be towed.
 The model is linearised there first; what is known stays so. A gear file's own boards fell on the
 fastening points of 5 of 8 drawn plants. After the last of them the next part begins."""
@@ -220,7 +220,7 @@ class OnsetMonitor:
         start = replace(watch.start, belief=belief, compared=watch.compared)
         if watch.refused and not self.watched:
             boards, self._tried = self._known.values, self._tried + 1
-            if self._tried % (DRAWS + 1):
+            if self._tried % (BOARDS_TRIED + 1):
                 away = belief.root @ self._draws.standard_normal(len(belief.mean))
                 boards = np.clip(watch.learned + away[: len(boards)], self._low, self._high)
                 begin_ns = watch.part.begin_ns(0)

@@ -36,7 +36,7 @@ PASSING_MODEL_FACTOR, PASSING_S = 3.0, 30.0
 error, and time in which it fades to 1/e: boards lean over in passing."""
 
 
-INFLATION = 1.2
+STATED_STD_FACTOR = 1.2
 """Factor on the std of all errors that are stated, as for steady windows."""
 
 
@@ -44,7 +44,7 @@ def belief_of(known: Knowledge) -> Belief:
     """Return the belief of the lasting parameters before anything is watched."""
     covariance, number = known.covariance, len(TowLayout(len(known.values), 0, (), WATCHED))
     roots = np.linalg.cholesky(covariance + 1e-12 * np.diag(np.diag(covariance)))
-    others = INFLATION * np.eye(number - len(roots))
+    others = STATED_STD_FACTOR * np.eye(number - len(roots))
     return Belief(np.zeros(number), block_diag(roots, others))
 
 
@@ -113,7 +113,7 @@ def residual_rows(
         Signatures of what has been found before, each in units of its prior std.
     """
     tow, layout = linear.tow, layout_of(linear.tow, gear, 1.0)
-    sizes = known.sizes.tempered(INFLATION)
+    sizes = known.sizes.tempered(STATED_STD_FACTOR)
     # Means scatter no less than neighbouring readings share.
     densities = np.array([known.densities.get(name, 0.0) for name in WATCHED])
     noise = np.maximum(tow.noise, densities / np.sqrt(LIVE.stretch_s))
@@ -129,7 +129,7 @@ def residual_rows(
     stretches, channels = place = tuple(rows[:, order])
     model = np.hstack([own.model for own in groups])[order]
     slopes = columns(linear, layout, np.ones(len(known.values)))[place]
-    lasting, std = np.ones(len(layout), np.bool_), np.full(len(layout), INFLATION)
+    lasting, std = np.ones(len(layout), np.bool_), np.full(len(layout), STATED_STD_FACTOR)
     lasting[layout.slices['starts']] = lasting[layout.of_knots] = False
     std[layout.of_log] *= log_factor(known, log_density)
     own_columns = slopes[:, lasting] @ belief.root

@@ -84,14 +84,19 @@ def _fit_from(
 def _standing(
     gear: TowedGear, prior: ParameterVector, tows: Sequence[MovingTow]
 ) -> Iterator[FloatArray]:
-    """Coefficients with which boards stand as in the first stretch that shows spread and roll."""
+    """Coefficients with which boards stand as in the first stretch that shows their attitudes."""
     # SciPy's optimisers load slowly, and few fits begin again.
     from trawl_ros.estimation.fit.standing import standing_starts
 
     tow = tows[0]
-    known = np.flatnonzero(np.isfinite(tow.means).all(axis=1))
+    attitudes = [name.endswith(('_pitch', '_roll')) for name in tow.channels]
+    known = np.flatnonzero(np.isfinite(tow.means[:, attitudes]).all(axis=1))
     if len(known):
-        means = dict(zip(tow.channels, tow.means[known[0]], strict=True))
+        means = {
+            name: value
+            for name, value in zip(tow.channels, tow.means[known[0]], strict=True)
+            if np.isfinite(value)
+        }
         inputs = without_errors(tow.inputs)(float(tow.middles[known[0]])).inputs
         yield from standing_starts(
             gear.model, prior, {**means, **dict(zip(INPUTS, inputs, strict=True))}

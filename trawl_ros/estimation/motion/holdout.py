@@ -16,7 +16,7 @@ from trawl_ros.estimation.motion.processes import GroupRows
 from trawl_ros.estimation.motion.sizes import LinearData
 from trawl_ros.estimation.motion.steps import linear_problem
 
-FOLDS, SEED = 5, 0
+FOLDS_OF_ONE_TOW, SEED_OF_FOLDS = 5, 0
 """Parts into which the states of a single tow are dealt, and the seed of their random order."""
 
 
@@ -43,7 +43,9 @@ class HeldOut:
     tows: IntArray = field(default_factory=lambda: np.zeros(0, np.int64))
 
 
-def dealt(states: Sequence[int], folds: int = FOLDS, seed: int = SEED) -> list[set[int]]:
+def dealt(
+    states: Sequence[int], folds: int = FOLDS_OF_ONE_TOW, seed: int = SEED_OF_FOLDS
+) -> list[set[int]]:
     """Deal states to folds in a random order, so that a fold is not one warp length at all speeds.
 
     With fewer states than folds each is left out alone.
@@ -76,10 +78,11 @@ def hold_out_states(
         With which the tows were fitted.
     """
     several = len(set(tow_of)) > 1
-    states = [
-        np.where(linear.tow.steady, number if several else linear.tow.steady_part, -1)
-        for number, linear in zip(tow_of, fit.linear, strict=True)
-    ]
+    states, before = [], 0
+    for number, linear in zip(tow_of, fit.linear, strict=True):
+        part = before + linear.tow.steady_part
+        states.append(np.where(linear.tow.steady, number if several else part, -1))
+        before = int(part[-1])
     every = np.unique(np.concatenate(states))
     every = every[every >= 0]
     folds = [{int(tow)} for tow in every] if several else dealt(every.tolist())

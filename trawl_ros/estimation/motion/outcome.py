@@ -117,10 +117,11 @@ class MotionOutcome:
         )  # fmt: skip
         for number, (linear, layout, z, known, precision) in enumerate(tows):
             root = extended_root(known.matrix, precision, shared)
-            means = dict(
-                zip(linear.tow.channels, np.nanmean(linear.tow.means, axis=0), strict=True)
-            )
-            means |= dict(zip(INPUTS, linear.tow.inputs.values.mean(axis=0), strict=True))
+            means = dict(zip(INPUTS, linear.tow.inputs.values.mean(axis=0), strict=True))
+            for name, column in zip(linear.tow.channels, linear.tow.means.T, strict=True):
+                # An opening counts in steady parts only, and may have none.
+                if np.isfinite(column).any():
+                    means[name] = np.nanmean(column)
             tow = self.numbers[number]
             for part, terms in (
                 ('calibration', channel_errors(layout.channels)),

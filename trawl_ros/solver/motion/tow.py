@@ -50,6 +50,9 @@ MAX_STEP_HALVINGS = 6
 """Number of halvings of a step that fails. A simulation takes more, through a fall that lasts
 milliseconds; derivatives through such a fall are of no use, and a fit leaves it out."""
 
+REAL_RATE = 1e-6
+"""Part of a rate that its imaginary part may be by rounding."""
+
 EXTRA_MODES = 6
 """Modes sought beyond those asked for: oscillations come in pairs, and some may be missed."""
 
@@ -285,20 +288,38 @@ def slow_motions(
         If there are fewer of them.
     """
     motion = linearised_motion(model, state, tow)
-    rates, vectors = motion.nearest(0.0, number + EXTRA_MODES, tolerance=1e-8)
-    paired = np.abs(rates.imag) > 1e-6 * np.abs(rates)
-    quiet = (rates.real < 0.0) & (np.abs(rates.imag) < np.abs(rates.real)) & (rates.imag >= 0.0)
-    columns = []
-    for mode in sorted(np.flatnonzero(quiet), key=lambda mode: -rates.real[mode]):
-        courses = [rates[mode] ** power * vectors[:, mode] for power in range(3)]
-        columns.append([course.real for course in courses])
-        if paired[mode]:
-            columns.append([course.imag for course in courses])
-    if len(columns) < number:
+    found = decaying_courses(*motion.nearest(0.0, number + EXTRA_MODES, tolerance=1e-8))
+    if len(found) < number:
         raise NoSteadyState(
-            f'found {len(columns)} slow motions of the gear that decay, expected {number}'
+            f'found {len(found)} slow motions of the gear that decay, expected {number}'
         )
-    places, paces, accelerations = np.array(columns[:number]).transpose(1, 2, 0)
+    places, paces, accelerations = found[:number].transpose(1, 2, 0)
     ways = places[: 3 * model.nodes]
     largest = ways[np.abs(ways).argmax(axis=0), range(number)]
     return places / largest, paces / largest, accelerations / largest
+
+
+def decaying_courses(rates: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return motions that decay by more than they swing, as real courses, the slowest first.
+
+    Parameters
+    ----------
+    rates, vectors : (m,) and (n, m) arrays
+        Eigenvalues λ, 1/s, and eigenvectors v, both complex; of a pair one is enough.
+
+    Returns
+    -------
+    (k, 3, n) array
+        Shape, velocity and acceleration of each: v, λ v and λ² v, of a pair their real and their
+        imaginary parts.
+    """
+    paired = np.abs(rates.imag) > REAL_RATE * np.abs(rates)
+    decays = (rates.real < 0.0) & (np.abs(rates.imag) < np.abs(rates.real))
+    courses = []
+    for mode in sorted(np.flatnonzero(decays), key=lambda mode: -rates.real[mode]):
+        twins = np.isclose(rates, rates[mode].conj(), rtol=REAL_RATE, atol=0.0)
+        if paired[mode] and rates.imag[mode] < 0.0 and twins.any():
+            continue
+        course = np.stack([rates[mode] ** power * vectors[:, mode] for power in range(3)])
+        courses += [course.real, course.imag] if paired[mode] else [course.real]
+    return np.array(courses).reshape(-1, 3, len(vectors))
