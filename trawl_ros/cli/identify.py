@@ -52,8 +52,8 @@ TABLE_COLUMNS = 100
 )  # fmt: skip
 @click.option(
     '--motion/--steady', default=True, show_default=True, help='Fit the whole tow, hauling and '
-    'veering included, which takes a minute per hour of tow; or only its steady parts, which is '
-    'twice as fast.',
+    'veering included, which takes a minute per hour of tow; or only its steady parts, in a '
+    'quarter of that.',
 )  # fmt: skip
 @UNITS_OPTION
 @NAMESPACE_OPTION
